@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+# Language level, warnings and the switches of the whole build.
+option(SPECTRACE_BUILD_TESTS "Build the test programs" ON)
+option(SPECTRACE_WERROR "Treat warnings as errors" OFF)
+option(SPECTRACE_DOUBLE "Build the light path in double precision (validation only)" OFF)
+set(SPECTRACE_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined or thread")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+add_library(spectrace_flags INTERFACE)
+target_compile_options(spectrace_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -fno-math-errno)
+# Identical images on every build of one source: no fused multiply-add behind our back.
+target_compile_options(spectrace_flags INTERFACE -ffp-contract=off)
+target_include_directories(spectrace_flags INTERFACE "${PROJECT_SOURCE_DIR}")
+if(SPECTRACE_WERROR)
+  target_compile_options(spectrace_flags INTERFACE -Werror)
+endif()
+if(SPECTRACE_DOUBLE)
+  target_compile_definitions(spectrace_flags INTERFACE SPECTRACE_DOUBLE=1)
+endif()
+if(SPECTRACE_SANITIZE)
+  target_compile_options(spectrace_flags INTERFACE -fsanitize=${SPECTRACE_SANITIZE} -fno-omit-frame-pointer -g)
+  target_link_options(spectrace_flags INTERFACE -fsanitize=${SPECTRACE_SANITIZE})
+endif()

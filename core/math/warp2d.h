@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bilinear densities on the unit square, interpolated over up to two parameters: sampled, inverted and
+// evaluated. The warp of Dupuy & Jakob 2018, sec. 4, and the sampler of every tabulated lobe here.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace spectrace {
+
+/// A family of grids [p0][p1][height][width] over the unit square, nodes on its border; between nodes the
+/// value is bilinear, between parameter values linear (the nearest end value holds outside their range).
+/// Immutable.
+class Warp2D {
+ public:
+  struct Params {
+    Float p0 = 0, p1 = 0;
+  };
+  struct Sample {
+    Vec2 position;    ///< in [0, 1]²; x runs along the width
+    Float pdf = 0;    ///< density per unit square area at `position`
+  };
+
+  Warp2D() = default;
+  /// `p0`, `p1`: strictly increasing, at least one entry (checked); width, height >= 2; data.size() = the
+  /// product of all, each finite and >= 0 (checked). With `normalize` each slice is scaled to integrate to
+  /// 1 (a slice of zeros becomes uniform) and sample() and invert() may be called; without it only eval().
+  Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, int height, std::span<const Float> data,
+         bool normalize);
+
+  /// Unit-square random numbers to a position of density eval(position). u in [0, 1]².
+  [[nodiscard]] Sample sample(Vec2 u, Params params = {}) const;
+  /// The u that sample() takes to `position`, with the density there.
+  [[nodiscard]] Sample invert(Vec2 position, Params params = {}) const;
+  /// Bilinear value (density where normalised) at `position` in [0, 1]².
+  [[nodiscard]] Float eval(Vec2 position, Params params = {}) const;
+
+ private:
+  struct Blend {  // the (at most four) slices around a parameter pair
+    std::array<std::size_t, 4> slice{};
+    std::array<Float, 4> weight{};
+    int count = 0;
+  };
+  [[nodiscard]] Blend blend(Params params) const;
+
+  std::vector<Float> p0_, p1_;
+  int width_ = 0, height_ = 0;
+  std::vector<Float> data_;         // [slice][height][width]
+  std::vector<Float> marginal_;     // [slice][height]: integral over rows up to each node row
+  std::vector<Float> conditional_;  // [slice][height][width]: integral along each node row
+};
+
+}  // namespace spectrace

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CIE 1931 2° observer, the illuminants D65 and A, and the way from spectra to XYZ and linear sRGB.
+#pragma once
+
+#include <array>
+
+#include "core/spectra/spectrum.h"
+
+namespace spectrace {
+
+/// x̄, ȳ, z̄ at a wavelength [nm]; linear between the tabulated nanometres, 0 outside 360-830 nm.
+Xyz cie_xyz_bar(double lambda_nm);
+/// ∫ ȳ dλ [nm] of that table (106.857): the normalisation of every XYZ here.
+double cie_y_integral();
+
+/// Relative spectral power, 1 at 560 nm. D65 is the CIE table (5 nm, linear), A the CIE formula.
+double illuminant_d65(double lambda_nm);
+double illuminant_a(double lambda_nm);
+
+/// ∫ L(λ) (x̄, ȳ, z̄) dλ / ∫ ȳ dλ over `range`, by 1 nm steps: a constant spectrum 1 has Y = 1.
+Xyz spectrum_to_xyz(const Spectrum& emission, WavelengthRange range = {});
+/// As seen under an illuminant, white (reflectance 1) having Y = 1.
+Xyz reflectance_to_xyz(const Spectrum& reflectance, double (*illuminant)(double) = illuminant_d65);
+
+/// Linear transforms between XYZ and linear sRGB (IEC 61966-2-1, D65); exact inverses of each other.
+Rgb xyz_to_rgb(const Xyz& xyz);
+Xyz rgb_to_xyz(const Rgb& rgb);
+/// The sRGB transfer curve for display, [0, 1] to [0, 1].
+double srgb_encode(double linear);
+double srgb_decode(double encoded);
+
+/// Adds one wavelength-sample estimate to XYZ sums: Σ_lanes L_i · (x̄,ȳ,z̄)(λ_i) / pdf_i / kLanes / ∫ȳ; lanes
+/// of density 0 (terminated) are skipped.
+Xyz sampled_to_xyz(const SampledSpectrum& radiance, const SampledWavelengths& lambda);
+
+}  // namespace spectrace

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wavelengths a path carries, and how they are drawn from the scene's range.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/spectra/sampled_spectrum.h"
+
+namespace spectrace {
+
+/// A closed range of wavelengths [nm]; scene data, never a compile-time constant.
+struct WavelengthRange {
+  Float min_nm = 360;  // default: what the CIE 1931 observer sees
+  Float max_nm = 830;
+
+  [[nodiscard]] constexpr Float width_nm() const { return max_nm - min_nm; }
+  friend constexpr bool operator==(WavelengthRange, WavelengthRange) = default;
+};
+
+/// kLanes wavelengths [nm] with the density [1/nm] each was drawn with (hero wavelengths: Wilkie et al.
+/// 2014). Lane 0 is the hero.
+class SampledWavelengths {
+ public:
+  SampledWavelengths() = default;
+  SampledWavelengths(const std::array<Float, kLanes>& lambda_nm, const std::array<Float, kLanes>& pdf_per_nm)
+      : lambda_nm_(lambda_nm), pdf_per_nm_(pdf_per_nm) {}
+
+  [[nodiscard]] Float lambda_nm(int lane) const { return lambda_nm_[lane]; }
+  /// 0 for a terminated lane.
+  [[nodiscard]] Float pdf_per_nm(int lane) const { return pdf_per_nm_[lane]; }
+  [[nodiscard]] bool secondary_terminated() const { return kLanes > 1 && pdf_per_nm_[1] == 0; }
+  /// At a dispersive event only the hero goes on; its density is divided by kLanes, because a hero is one
+  /// of kLanes equally likely choices. Idempotent.
+  void terminate_secondary();
+
+ private:
+  std::array<Float, kLanes> lambda_nm_{};
+  std::array<Float, kLanes> pdf_per_nm_{};
+};
+
+/// Density over a range from which the hero and, by rotation in the unit interval, the other lanes are
+/// drawn. Immutable; shared by threads.
+class WavelengthDistribution {
+ public:
+  /// Constant density: 1 / width.
+  static WavelengthDistribution uniform(WavelengthRange range);
+  /// Proportional to the observer's x̄ + ȳ + z̄ with a uniform floor of 2 % of the mean, so that every
+  /// wavelength of the range can be drawn.
+  static WavelengthDistribution visible(WavelengthRange range);
+
+  /// `u` in [0, 1).
+  [[nodiscard]] SampledWavelengths sample(Float u) const;
+  /// [1/nm]; 0 outside the range.
+  [[nodiscard]] Float pdf_per_nm(Float lambda_nm) const;
+  [[nodiscard]] WavelengthRange range() const { return range_; }
+
+ private:
+  WavelengthDistribution(WavelengthRange range, std::vector<Float> density);
+  WavelengthRange range_;
+  std::vector<Float> density_;     // piecewise linear over equal steps, integrates to 1 [1/nm]
+  std::vector<Float> cumulative_;  // at the same nodes; first 0, last 1
+};
+
+}  // namespace spectrace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// A function of wavelength. What it means (reflectance, radiance, index of refraction) is its user's.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/base/json.h"
+#include "core/spectra/sampled_spectrum.h"
+#include "core/spectra/sampled_wavelengths.h"
+
+namespace spectrace {
+
+using Rgb = std::array<double, 3>;  ///< linear sRGB primaries, D65 white
+using Xyz = std::array<double, 3>;  ///< CIE 1931
+
+struct ConstantSpectrum {
+  Float value = 0;
+  [[nodiscard]] Float at(Float) const { return value; }
+};
+
+/// Linear between samples; outside them the nearest end value holds (hard case H13).
+class TabulatedSpectrum {
+ public:
+  /// `lambda_nm` strictly increasing, at least one entry, as many as `values`, all finite: checked.
+  TabulatedSpectrum(std::vector<Float> lambda_nm, std::vector<Float> values);
+  [[nodiscard]] Float at(Float lambda_nm) const;
+  [[nodiscard]] std::span<const Float> lambda_nm() const { return lambda_nm_; }
+  [[nodiscard]] std::span<const Float> values() const { return values_; }
+
+ private:
+  std::vector<Float> lambda_nm_, values_;
+  Float inverse_step_per_nm_ = 0;  // > 0 where the samples are equally spaced: no search
+};
+
+/// Planck's law [W·m⁻²·sr⁻¹·nm⁻¹] at temperature T [K], times `scale`.
+struct BlackbodySpectrum {
+  Float kelvin = 6500;
+  Float scale = 1;
+  [[nodiscard]] Float at(Float lambda_nm) const;
+};
+
+/// scale · S(c0 λ² + c1 λ + c2) with S(x) = 1/2 + x / (2 sqrt(1 + x²)), λ in [nm]: Jakob & Hanika 2019,
+/// eqs. 2-3. In [0, scale], smooth.
+struct SigmoidSpectrum {
+  std::array<Float, 3> c{0, 0, 0};
+  Float scale = 1;
+  [[nodiscard]] Float at(Float lambda_nm) const;
+};
+
+/// A sigmoid times the illuminant D65, normalised so that rgb (1,1,1) has the colour and luminance of white:
+/// what an RGB emission becomes.
+struct RgbIlluminantSpectrum {
+  SigmoidSpectrum sigmoid;
+  [[nodiscard]] Float at(Float lambda_nm) const;
+};
+
+/// n² = 1 + Σ b_i λ² / (λ² - c_i), λ in [µm], c in [µm²]; 1 where the sum is negative.
+struct SellmeierSpectrum {
+  std::array<Float, 3> b{};
+  std::array<Float, 3> c_um2{};
+  [[nodiscard]] Float at(Float lambda_nm) const;
+};
+
+/// A closed sum of the above; immutable, copyable.
+class Spectrum {
+ public:
+  using Variant = std::variant<ConstantSpectrum, TabulatedSpectrum, BlackbodySpectrum, SigmoidSpectrum,
+                               RgbIlluminantSpectrum, SellmeierSpectrum>;
+  Spectrum() : v_(ConstantSpectrum{0}) {}
+  template <typename T>
+    requires std::is_constructible_v<Variant, T>
+  Spectrum(T s) : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor): a spectrum is any of its kinds
+  static Spectrum constant(Float value) { return ConstantSpectrum{value}; }
+
+  [[nodiscard]] Float at(Float lambda_nm) const;
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda) const;
+  /// The same value at every wavelength?
+  [[nodiscard]] bool is_constant() const;
+  /// Upper bound over the range, to 1 nm: for light selection and validation.
+  [[nodiscard]] Float max_over(WavelengthRange range) const;
+  [[nodiscard]] Spectrum scaled(Float factor) const;
+
+ private:
+  Variant v_;
+};
+
+/// What an RGB triple means decides how it is uplifted.
+enum class SpectrumRole {
+  kReflectance,  ///< values in [0, 1]; RGB by a sigmoid
+  kEmission,     ///< W·m⁻²·sr⁻¹·nm⁻¹, unbounded; RGB by a scaled sigmoid times D65
+  kUnbounded,    ///< index of refraction, extinction: RGB is refused
+};
+
+/// Reads the JSON forms of docs/scene-format.md: a number; {"rgb": [r,g,b]}; {"wavelengths_nm": [...],
+/// "values": [...]}; {"file": "x.spd", "column": 1}; {"blackbody_K": T, "scale": s}; {"illuminant": "D65" | "A"
+/// | "E", "scale": s} (1 at 560 nm); {"sellmeier": {"b": [3], "c_um2": [3]}}. Every form takes "scale".
+/// Problems are recorded in the document.
+Spectrum parse_spectrum(const JsonValue& json, SpectrumRole role, const Spectrum& fallback = {});
+
+/// Two columns of text (wavelength [nm], value), '#' comments. Throws InputError with line and column.
+TabulatedSpectrum read_spd(const std::filesystem::path& file);
+
+}  // namespace spectrace

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as its JSON file says it, before anything is loaded: plain data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "core/spectra/spectrum.h"
+#include "materials/material.h"
+
+namespace spectrace {
+
+struct CameraDesc {  ///< pinhole
+  Vec3 origin{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
+  Float fov_deg = 45;  ///< of the shorter image side, in (0, 180)
+};
+
+struct FilmDesc {
+  int width = 512, height = 512;
+};
+
+struct IntegratorDesc {
+  int max_depth = 8;        ///< path segments after the camera's; 1 = direct light only
+  int roulette_depth = 4;   ///< Russian roulette from this vertex on
+  bool next_event = true;   ///< sample lights; false leaves it to BSDF sampling alone (tests)
+};
+
+struct SphereDesc {
+  Vec3 center{};
+  Float radius = 1;
+};
+struct QuadDesc {  ///< corner + [0,1] edge_u + [0,1] edge_v; normal = edge_u x edge_v; uv along the edges
+  Vec3 corner{}, edge_u{1, 0, 0}, edge_v{0, 1, 0};
+};
+struct MeshDesc {  ///< triangles of an OBJ file, or given in place
+  std::filesystem::path file;
+  std::vector<Vec3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  bool smooth_normals = true;  ///< use the file's normals where it has them
+};
+struct InstanceDesc {  ///< a group under one more transform
+  std::string group;
+};
+
+struct ShapeDesc {
+  std::string where;     ///< JSON place, for messages at build time
+  std::variant<SphereDesc, QuadDesc, MeshDesc, InstanceDesc> kind;
+  std::string material;  ///< name; ignored for instances
+  Transform to_world;
+  std::optional<Spectrum> emission;  ///< radiance [W·m⁻²·sr⁻¹·nm⁻¹], front side; not inside groups
+};
+
+struct GroupDesc {
+  std::string name;
+  std::vector<ShapeDesc> shapes;  ///< no instances among them
+};
+
+struct PointLightDesc {
+  Vec3 position{};
+  Spectrum intensity;  ///< [W·sr⁻¹·nm⁻¹]
+};
+struct DirectionalLightDesc {
+  Vec3 direction{0, 0, -1};  ///< the way the light travels; unit
+  Spectrum irradiance;       ///< [W·m⁻²·nm⁻¹] on a surface facing it
+};
+struct EnvironmentDesc {  ///< constant radiance, or a latitude-longitude image times it
+  std::filesystem::path file;  ///< empty: constant
+  Spectrum radiance = Spectrum::constant(1);
+  Float scale = 1;
+  Transform to_world;  ///< rotation; the image's up is +z
+};
+using LightDesc = std::variant<PointLightDesc, DirectionalLightDesc, EnvironmentDesc>;
+
+struct SceneDesc {
+  std::string file_name;
+  std::string sha256;  ///< of the JSON text
+  WavelengthRange range;
+  bool visible_sampling = true;  ///< draw wavelengths by the observer's sensitivity; false: uniformly
+  CameraDesc camera;
+  FilmDesc film;
+  IntegratorDesc integrator;
+  int spp = 64;
+  std::uint64_t seed = 0;
+  std::vector<MaterialDesc> materials;
+  std::vector<GroupDesc> groups;
+  std::vector<ShapeDesc> shapes;
+  std::vector<LightDesc> lights;
+};
+
+/// Reads and validates; throws InputError with every mistake of the file. Form: docs/scene-format.md,
+/// schema: scenes/scene.schema.json.
+SceneDesc load_scene(const std::filesystem::path& file);
+SceneDesc parse_scene(const std::string& text, const std::filesystem::path& file_name);
+
+}  // namespace spectrace
