@@ -2,7 +2,6 @@
 // Image metrics in double precision. Each states its constants; any non-finite pixel makes `finite` false.
 #pragma once
 
-
 #include "core/image/image.h"
 
 namespace spectrace {

@@ -12,17 +12,19 @@
 
 namespace spectrace {
 
+/// The parameter values a lookup asks for.
+struct WarpParams {
+  Float p0 = 0, p1 = 0;
+};
+
 /// A family of grids [p0][p1][height][width] over the unit square, nodes on its border; between nodes the
 /// value is bilinear, between parameter values linear (the nearest end value holds outside their range).
 /// Immutable.
 class Warp2D {
  public:
-  struct Params {
-    Float p0 = 0, p1 = 0;
-  };
   struct Sample {
-    Vec2 position;    ///< in [0, 1]²; x runs along the width
-    Float pdf = 0;    ///< density per unit square area at `position`
+    Vec2 position;  ///< in [0, 1]²; x runs along the width
+    Float pdf = 0;  ///< density per unit square area at `position`
   };
 
   Warp2D() = default;
@@ -33,11 +35,11 @@ class Warp2D {
          bool normalize);
 
   /// Unit-square random numbers to a position of density eval(position). u in [0, 1]².
-  [[nodiscard]] Sample sample(Vec2 u, Params params = {}) const;
+  [[nodiscard]] Sample sample(Vec2 u, WarpParams params = {}) const;
   /// The u that sample() takes to `position`, with the density there.
-  [[nodiscard]] Sample invert(Vec2 position, Params params = {}) const;
+  [[nodiscard]] Sample invert(Vec2 position, WarpParams params = {}) const;
   /// Bilinear value (density where normalised) at `position` in [0, 1]².
-  [[nodiscard]] Float eval(Vec2 position, Params params = {}) const;
+  [[nodiscard]] Float eval(Vec2 position, WarpParams params = {}) const;
 
  private:
   struct Blend {  // the (at most four) slices around a parameter pair
@@ -45,7 +47,7 @@ class Warp2D {
     std::array<Float, 4> weight{};
     int count = 0;
   };
-  [[nodiscard]] Blend blend(Params params) const;
+  [[nodiscard]] Blend blend(WarpParams params) const;
 
   std::vector<Float> p0_, p1_;
   int width_ = 0, height_ = 0;

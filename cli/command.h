@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// One file a subcommand: each adds its options and, when the command line names it, becomes the work to do.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace spectrace::cli {
+
+enum class ExitCode : int {
+  kSuccess = 0,
+  kDiffers = 1,   ///< images differ, or a fit is unusable
+  kUsage = 2,     ///< the command line itself
+  kBadInput = 3,  ///< InputError
+  kInternal = 4,
+};
+
+using Action = std::function<ExitCode()>;
+
+/// Each adds to `app`; parsing the command line sets `chosen`.
+void add_render(CLI::App& app, Action& chosen);  ///< the main command: `spectrace SCENE.json`
+void add_separate(CLI::App& app, Action& chosen);
+void add_compare(CLI::App& app, Action& chosen);
+void add_inspect(CLI::App& app, Action& chosen);
+void add_acquire(CLI::App& app, Action& chosen);
+void add_sheet(CLI::App& app, Action& chosen);  ///< contact sheet of images
+
+}  // namespace spectrace::cli
