@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Install, build, then the whole main job on a material of the project's own: measure it with the virtual
+# goniophotometer, separate it, render it raw and with each model, compare, and lay the pictures side by side.
+# Everything lands in demo-out/. Another scene: scripts/demo.sh SCENE.json (its measured materials are separated).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_packages.sh
+cmake --preset release -DSPECTRACE_BUILD_TESTS=OFF >/dev/null
+cmake --build --preset release --target spectrace
+spectrace=build/release/cli/spectrace
+
+out=demo-out
+mkdir -p "$out"
+scene=${1:-scenes/material_ball.json}
+models=(sun fresnel diffraction)
+
+step() { printf '\n== %s\n' "$*"; }
+
+if (($# == 0)); then
+  if [[ ! -e $out/pearlescent.bsdf || scenes/materials/pearlescent.json -nt $out/pearlescent.bsdf ]]; then
+    step "Measure scenes/materials/pearlescent.json"
+    "$spectrace" acquire scenes/materials/pearlescent.json -o "$out/pearlescent.bsdf"
+  fi
+  step "Separate $out/pearlescent.bsdf"
+  "$spectrace" separate "$out/pearlescent.bsdf" -o "$out/pearlescent.sep"
+fi
+
+step "Render $scene: the measurement itself, then each model"
+"$spectrace" "$scene" -o "$out/raw.exr"
+for model in "${models[@]}"; do
+  "$spectrace" "$scene" --separate "$model" -o "$out/$model.exr"
+done
+
+step "How close is each model to the measurement?"
+"$spectrace" compare "$out/raw.exr" "${models[@]/#/$out/}" 2>/dev/null ||
+  "$spectrace" compare "$out/raw.exr" "$out/sun.exr" "$out/fresnel.exr" "$out/diffraction.exr"
+
+step "The pictures"
+"$spectrace" sheet "$out/contact_sheet.png" "$out"/{raw,sun,fresnel,diffraction}.exr \
+  --labels "measured,sun,fresnel,diffraction"
+echo
+ls -1 "$out"/*.exr "$out"/*.png

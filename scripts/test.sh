@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Install, build, test. Arguments go to ctest, for example: scripts/test.sh -L unit
+# The long tests stay out unless asked for (docs/validation.md): scripts/test.sh -L long
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_packages.sh
+export SPECTRACE_DATA="${SPECTRACE_DATA:-$PWD/../shared/data}"
+cmake --preset release -DSPECTRACE_BUILD_TESTS=ON >/dev/null
+cmake --build --preset release
+
+selection=("$@")
+if ((${#selection[@]} == 0)); then
+  selection=(-LE long)
+fi
+exec ctest --test-dir build/release --output-on-failure -j "$(nproc)" "${selection[@]}"
