@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's frame: builds the command line, runs what it names, turns every outcome into an exit code.
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <system_error>
+
+#include "cli/command.h"
+#include "core/base/error.h"
+#include "core/base/version.h"
+
+namespace spectrace::cli {
+
+// Weak until every command has its file: a program with some of them links.
+[[gnu::weak]] void add_render(CLI::App& app, Action& chosen);
+[[gnu::weak]] void add_separate(CLI::App& app, Action& chosen);
+[[gnu::weak]] void add_compare(CLI::App& app, Action& chosen);
+[[gnu::weak]] void add_inspect(CLI::App& app, Action& chosen);
+[[gnu::weak]] void add_acquire(CLI::App& app, Action& chosen);
+[[gnu::weak]] void add_sheet(CLI::App& app, Action& chosen);
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  spectrace scenes/cornell_box.json -o box.exr --spp 256\n"
+    "  spectrace scenes/material_ball.json --separate diffraction -o ball.exr\n"
+    "  spectrace acquire scenes/materials/pearlescent.json -o pearlescent.bsdf\n"
+    "  spectrace separate pearlescent.bsdf -o pearlescent.sep\n"
+    "  spectrace compare reference.exr test.exr --max relmse=1e-3 --min ssim=0.99\n"
+    "  spectrace inspect pearlescent.bsdf\n"
+    "\n"
+    "Exit codes: 0 success, 1 images differ or a fit is unusable, 2 usage, 3 bad input, 4 internal error.";
+
+ExitCode run(int argc, const char* const* argv) {
+  CLI::App app{"Spectral path tracing, with separation of measured BRDFs into diffuse and specular.",
+               "spectrace"};
+  app.set_version_flag("--version", fmt::format("spectrace {} ({})", version(), commit()));
+  app.footer(kExamples);
+  app.require_subcommand(0, 1);
+  Action chosen;
+  for (auto* add : {&add_render, &add_separate, &add_compare, &add_inspect, &add_acquire, &add_sheet}) {
+    if (add != nullptr) {
+      add(app, chosen);
+    }
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    // --help and --version arrive here as well, with exit code 0.
+    return app.exit(e) == 0 ? ExitCode::kSuccess : ExitCode::kUsage;
+  }
+  if (!chosen) {  // nothing was asked for
+    fmt::print(stderr, "{}", app.help());
+    return ExitCode::kUsage;
+  }
+  return chosen();
+}
+
+}  // namespace
+}  // namespace spectrace::cli
+
+int main(int argc, char** argv) {
+  using spectrace::cli::ExitCode;
+  ExitCode code = ExitCode::kInternal;
+  try {
+    code = spectrace::cli::run(argc, argv);
+    if (std::fflush(stdout) != 0) {
+      throw spectrace::InputError("standard output", "", "cannot be written");
+    }
+  } catch (const spectrace::InputError& e) {
+    for (const spectrace::Diagnostic& diagnostic : e.diagnostics()) {
+      fmt::print(stderr, "{}\n", diagnostic.text());
+    }
+    code = ExitCode::kBadInput;
+  } catch (const std::system_error& e) {
+    // What the system refuses (a full disk, a closed pipe) is the world's doing, not a fault of the program.
+    fmt::print(stderr, "{}\n", e.what());
+    code = ExitCode::kBadInput;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "internal error: out of memory\n");
+    code = ExitCode::kInternal;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "internal error: {}\n", e.what());
+    code = ExitCode::kInternal;
+  } catch (...) {
+    fmt::print(stderr, "internal error: unknown exception\n");
+    code = ExitCode::kInternal;
+  }
+  return static_cast<int>(code);
+}
