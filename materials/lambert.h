@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/image/texture.h"
+#include "materials/bsdf.h"
+
+namespace spectrace {
+
+/// f = reflectance / π.
+struct Lambert {
+  Texture reflectance;  ///< in [0, 1]
+
+  [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
+  [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
+  [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
+  [[nodiscard]] bool is_delta() const { return false; }
+};
+
+/// Directions in proportion to cosθ / π: Malley's method over a concentric disk (Shirley & Chiu 1997).
+[[nodiscard]] Vec3 sample_cosine_hemisphere(Vec2 u);
+
+static_assert(Bsdf<Lambert>);
+
+}  // namespace spectrace
