@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene as a whole: its sections, and the checks that need more than one of them.
+#include "renderer/scene_parser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "core/base/file.h"
+#include "renderer/scene_desc.h"
+
+namespace spectrace {
+namespace {
+
+constexpr std::int64_t kMaxSide = 65536;
+// What read_image() accepts by default: a larger image could be written but not compared.
+constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
+constexpr std::int64_t kMaxDepth = 65536;
+constexpr std::int64_t kMaxSpp = std::numeric_limits<std::int32_t>::max();
+// Any light that a lens or a grating would be built for; the observer sees 360 to 830 nm of it.
+constexpr NumberRange kWavelengths{.min = 100, .max = 10000};
+constexpr double kVisibleMin_nm = 360, kVisibleMax_nm = 830;
+// Below this sine of the angle between view and up, single precision leaves too few digits for a frame.
+constexpr double kMinUpSine = 1e-4;
+
+void parse_spectrum_section(const JsonValue& json, SceneDesc& scene) {
+  const JsonValue range = json.get("range_nm");
+  if (range.exists()) {
+    const std::vector<double> ends = range.numbers(2, 2, kWavelengths);
+    if (ends.size() == 2) {
+      scene.range = {static_cast<Float>(ends[0]), static_cast<Float>(ends[1])};
+      if (!(ends[1] - ends[0] >= 1)) {
+        range.error("expected [min, max] at least 1 nm apart, min first");
+      } else if (ends[0] >= kVisibleMax_nm || ends[1] <= kVisibleMin_nm) {
+        range.error(fmt::format("nothing of [{}, {}] nm is visible (360 to 830 nm): the image would be black",
+                                ends[0], ends[1]));
+      }
+    }
+  }
+  scene.visible_sampling = json.get("sampling").choice("visible", {"visible", "uniform"}) == "visible";
+  json.reject_unknown_keys();
+}
+
+void parse_camera(const JsonValue& json, CameraDesc& camera) {
+  static_cast<void>(json.get("type").choice("pinhole", {"pinhole"}));  // the only kind: checked, not stored
+  camera.origin = json.require("origin").vec3(camera.origin);
+  const JsonValue target = json.require("target");
+  camera.target = target.vec3(camera.target);
+  const JsonValue up = json.get("up");
+  camera.up = parse_nonzero(up, camera.up);
+  camera.fov_deg = static_cast<Float>(
+      json.get("fov_deg").number(camera.fov_deg, {.min = 0, .max = 180, .min_open = true, .max_open = true}));
+  json.reject_unknown_keys();
+  if (!json.is_object()) {
+    return;
+  }
+  const Vec3 view = camera.target - camera.origin;
+  if (view == Vec3{}) {
+    target.error("is the same point as the origin: the camera has nowhere to look");
+  } else if (length(cross(normalize(view), normalize(camera.up))) < kMinUpSine) {
+    (up.exists() ? up : json).error("\"up\" is parallel to the direction from origin to target");
+  }
+}
+
+void parse_film(const JsonValue& json, FilmDesc& film) {
+  const std::int64_t width = json.get("width").integer(film.width, 1, kMaxSide);
+  const std::int64_t height = json.get("height").integer(film.height, 1, kMaxSide);
+  json.reject_unknown_keys();
+  if (width * height > kMaxPixels) {
+    json.error(fmt::format("{} x {} pixels: more than {}", width, height, kMaxPixels));
+  }
+  film = {static_cast<int>(width), static_cast<int>(height)};
+}
+
+void parse_sampler(const JsonValue& json, SceneDesc& scene) {
+  scene.spp = static_cast<int>(json.get("spp").integer(scene.spp, 1, kMaxSpp));
+  scene.seed =
+      static_cast<std::uint64_t>(json.get("seed").integer(0, 0, std::numeric_limits<std::int64_t>::max()));
+  json.reject_unknown_keys();
+}
+
+void parse_integrator(const JsonValue& json, IntegratorDesc& integrator) {
+  integrator.max_depth = static_cast<int>(json.get("max_depth").integer(integrator.max_depth, 0, kMaxDepth));
+  integrator.roulette_depth =
+      static_cast<int>(json.get("roulette_depth").integer(integrator.roulette_depth, 1, kMaxDepth));
+  integrator.next_event = json.get("next_event").boolean(integrator.next_event);
+  json.reject_unknown_keys();
+}
+
+/// Records `json`'s "name" where an earlier one is the same, else adds it.
+void add_name(const JsonValue& json, const std::string& name, std::vector<std::string>& names) {
+  if (name.empty()) {
+    return;  // recorded already: a name is required
+  }
+  if (std::find(names.begin(), names.end(), name) != names.end()) {
+    json.get("name").error(fmt::format("\"{}\" is the name of an earlier one: names must differ", name));
+    return;
+  }
+  names.push_back(name);
+}
+
+void parse_materials(const JsonValue& json, SceneDesc& scene, SceneNames& names) {
+  for (const JsonValue& element : json.elements()) {
+    MaterialDesc material = parse_material(element);
+    if (const JsonValue name = element.require("name"); name.is_string() && material.name.empty()) {
+      name.error("expected a name, got an empty string");
+    }
+    std::visit(
+        [&](const auto& kind) {
+          if constexpr (requires { kind.file; }) {
+            parse_existing_file(element.get("file"));
+          }
+        },
+        material.kind);
+    add_name(element, material.name, names.materials);
+    scene.materials.push_back(std::move(material));
+  }
+}
+
+void parse_lights(const JsonValue& json, SceneDesc& scene) {
+  bool has_environment = false;
+  for (const JsonValue& element : json.elements()) {
+    scene.lights.push_back(parse_light(element));
+    if (std::holds_alternative<EnvironmentDesc>(scene.lights.back())) {
+      if (has_environment) {
+        element.error("a second environment: a scene has at most one");
+      }
+      has_environment = true;
+    }
+  }
+}
+
+}  // namespace
+
+std::filesystem::path parse_existing_file(const JsonValue& json) {
+  if (!json.is_string()) {
+    return json.path();
+  }
+  if (json.string().empty()) {
+    json.error("expected the name of a file, got an empty string");
+    return {};
+  }
+  const std::filesystem::path file = json.path();
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) {
+    json.error(fmt::format("there is no file \"{}\"", file.lexically_normal().string()));
+  }
+  return file;
+}
+
+Vec3 parse_nonzero(const JsonValue& json, Vec3 fallback) {
+  const Vec3 v = json.vec3(fallback);
+  if (v == Vec3{}) {
+    json.error("expected a vector that is not zero");
+    return fallback;
+  }
+  return v;
+}
+
+SceneDesc parse_scene(const std::string& text, const std::filesystem::path& file_name) {
+  JsonDocument document = JsonDocument::parse(text, file_name.string());
+  SceneDesc scene;
+  scene.file_name = file_name.string();
+  scene.sha256 = sha256_hex(std::as_bytes(std::span(text)));
+
+  const JsonValue root = document.root();
+  SceneNames names;
+  if (root.is_object()) {
+    parse_spectrum_section(root.get("spectrum"), scene);
+    parse_camera(root.require("camera"), scene.camera);
+    parse_film(root.get("film"), scene.film);
+    parse_sampler(root.get("sampler"), scene);
+    parse_integrator(root.get("integrator"), scene.integrator);
+    parse_materials(root.get("materials"), scene, names);
+    for (const JsonValue& element : root.get("groups").elements()) {
+      scene.groups.push_back(parse_group(element, names));
+      add_name(element, scene.groups.back().name, names.groups);
+    }
+    for (const JsonValue& element : root.get("shapes").elements()) {
+      scene.shapes.push_back(parse_shape(element, names, ShapePlace::kScene));
+    }
+    parse_lights(root.get("lights"), scene);
+    root.reject_unknown_keys();
+  } else {
+    root.error("expected a scene: an object with \"camera\", \"shapes\", ...");
+  }
+  document.throw_if_wrong();
+  return scene;
+}
+
+SceneDesc load_scene(const std::filesystem::path& file) {
+  // A scene is text written by people or scripts; beyond this it is some other file.
+  constexpr std::size_t kMaxBytes = std::size_t(256) << 20;
+  const std::vector<std::byte> bytes = read_file(file, kMaxBytes);
+  return parse_scene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
+}
+
+}  // namespace spectrace

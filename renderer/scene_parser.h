@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the scene parser: each turns one JSON place into plain data and records what is wrong there.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/json.h"
+#include "renderer/scene_desc.h"
+
+namespace spectrace {
+
+/// What shapes may refer to.
+struct SceneNames {
+  std::vector<std::string> materials, groups;
+};
+
+enum class ShapePlace { kScene, kGroup };
+
+ShapeDesc parse_shape(const JsonValue& json, const SceneNames& names, ShapePlace place);
+GroupDesc parse_group(const JsonValue& json, const SceneNames& names);
+LightDesc parse_light(const JsonValue& json);
+/// An object with one of translate, rotate, scale, matrix, or a list of them, the first applied first.
+Transform parse_transform(const JsonValue& json);
+
+/// The value as a file name; recorded where no such file is there.
+std::filesystem::path parse_existing_file(const JsonValue& json);
+/// A vector of any length but zero; `fallback` where it is not.
+Vec3 parse_nonzero(const JsonValue& json, Vec3 fallback);
+
+}  // namespace spectrace
