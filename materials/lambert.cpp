@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "materials/lambert.h"
+
+#include "core/math/math.h"
+
+namespace spectrace {
+
+Vec3 sample_cosine_hemisphere(Vec2 u) {
+  const Float a = 2 * u.x - 1, b = 2 * u.y - 1;
+  if (a == 0 && b == 0) return {0, 0, 1};
+  const bool wide = std::abs(a) > std::abs(b);
+  const Float r = wide ? a : b;
+  const Float phi = wide ? kPi / 4 * (b / a) : kPi / 2 - kPi / 4 * (a / b);
+  return {r * std::cos(phi), r * std::sin(phi), safe_sqrt(1 - sqr(r))};
+}
+
+BsdfValue Lambert::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  if (wo.z <= 0 || wi.z <= 0) return {};
+  const Float pdf = wi.z * kInvPi;
+  return {reflectance.sample(at.lambda, at.uv) * pdf, pdf};
+}
+
+LobeValues Lambert::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  return {.diffuse = evaluate(wo, wi, at).value_cos, .fresnel = {}, .diffraction = {}};
+}
+
+std::optional<BsdfSample> Lambert::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
+  if (wo.z <= 0) return std::nullopt;
+  const Vec3 wi = sample_cosine_hemisphere(u.direction);
+  const SampledSpectrum albedo = reflectance.sample(at.lambda, at.uv);
+  if (wi.z <= 0 || albedo.is_zero()) return std::nullopt;
+  return BsdfSample{.wi = wi, .weight = albedo, .pdf = wi.z * kInvPi, .lobe = Lobe::kDiffuse};
+}
+
+}  // namespace spectrace

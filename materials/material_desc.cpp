@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials from JSON; the forms are documented in docs/materials.md.
+#include <memory>
+#include <utility>
+
+#include "materials/material.h"
+#include "materials/refractive_index.h"
+
+namespace spectrace {
+
+namespace {
+
+constexpr NumberRange kAlphaRange{.min = kMinAlpha, .max = 1};
+// Beyond 100 µm interference is finer than any wavelength step of this program.
+constexpr NumberRange kFilmThickness{.min = 0, .max = 1e5};
+
+/// A real index of refraction or an extinction; `positive` refuses 0 as well as negative values.
+Spectrum parse_optical_constant(const JsonValue& json, bool positive) {
+  Spectrum s = parse_spectrum(json, SpectrumRole::kUnbounded, Spectrum::constant(1));
+  // -min over the widest range any scene may ask for.
+  const Float minimum = -s.scaled(-1).max_over({.min_nm = 200, .max_nm = 2000});
+  if (minimum < 0 || (positive && minimum == 0)) json.error(positive ? "must be > 0" : "must be >= 0");
+  return s;
+}
+
+/// "metal_file", or "eta" and "k".
+void parse_index(const JsonValue& json, ConductorFresnel& fresnel) {
+  const JsonValue file = json.get("metal_file");
+  if (!file.exists()) {
+    fresnel.eta = parse_optical_constant(json.require("eta"), true);
+    fresnel.k = parse_optical_constant(json.require("k"), false);
+    return;
+  }
+  for (const char* key : {"eta", "k"}) {
+    if (const JsonValue other = json.get(key); other.exists()) {
+      other.error("\"metal_file\" already gives eta and k");
+    }
+  }
+  try {
+    RefractiveIndex index = read_refractive_index(file.path());
+    fresnel.eta = std::move(index.eta);
+    fresnel.k = std::move(index.k);
+  } catch (const InputError& e) {
+    file.error(e.diagnostics().front().text());
+  }
+}
+
+std::optional<ThinFilm> parse_thin_film(const JsonValue& json) {
+  if (!json.exists()) return std::nullopt;
+  ThinFilm film;
+  film.eta = parse_optical_constant(json.require("eta"), true);
+  film.thickness_nm = static_cast<Float>(json.require("thickness_nm").number(0, kFilmThickness));
+  json.reject_unknown_keys();
+  return film;
+}
+
+ConductorFresnel parse_conductor_fresnel(const JsonValue& json) {
+  ConductorFresnel fresnel;
+  parse_index(json, fresnel);
+  fresnel.film = parse_thin_film(json.get("thin_film"));
+  return fresnel;
+}
+
+/// One alpha, or [alpha_x, alpha_y].
+Ggx parse_roughness(const JsonValue& json) {
+  Ggx ggx;
+  if (json.is_array()) {
+    const std::vector<double> alpha = json.numbers(2, 2, kAlphaRange);
+    if (alpha.size() == 2) ggx = {static_cast<Float>(alpha[0]), static_cast<Float>(alpha[1])};
+  } else {
+    ggx.alpha_x = ggx.alpha_y = static_cast<Float>(json.number(ggx.alpha_x, kAlphaRange));
+  }
+  return ggx;
+}
+
+decltype(MaterialDesc::kind) parse_conductor(const JsonValue& json) {
+  ConductorFresnel fresnel = parse_conductor_fresnel(json);
+  const JsonValue roughness = json.get("roughness");
+  const bool is_smooth = !roughness.exists() || (roughness.is_number() && roughness.number(0) == 0);
+  if (is_smooth) return SmoothConductor{std::move(fresnel)};
+  return RoughConductor{std::move(fresnel), parse_roughness(roughness)};
+}
+
+Glossy parse_glossy(const JsonValue& json) {
+  Glossy glossy;
+  glossy.reflectance = parse_texture(json.require("reflectance"));
+  if (const JsonValue f0 = json.get("f0"); f0.exists()) {
+    for (const char* key : {"eta", "k", "metal_file", "thin_film"}) {
+      if (const JsonValue other = json.get(key); other.exists()) {
+        other.error(std::string("\"f0\" and \"") + key + "\" exclude each other");
+      }
+    }
+    glossy.fresnel = SchlickFresnel{parse_spectrum(f0, SpectrumRole::kReflectance)};
+  } else {
+    glossy.fresnel = parse_conductor_fresnel(json);
+  }
+  glossy.ggx = parse_roughness(json.require("roughness"));
+  const JsonValue specular = json.get("specular_scale"), diffuse = json.get("diffuse_scale");
+  glossy.specular_scale = static_cast<Float>(specular.number(0.5, kUnitInterval));
+  glossy.diffuse_scale = static_cast<Float>(diffuse.number(1 - glossy.specular_scale, kUnitInterval));
+  // 1e-6: the rounding of two single-precision shares.
+  if (glossy.specular_scale + glossy.diffuse_scale > Float(1 + 1e-6)) {
+    (diffuse.exists() ? diffuse : specular).error("specular_scale + diffuse_scale must be at most 1");
+  }
+  return glossy;
+}
+
+SeparatedDesc parse_separated(const JsonValue& json) {
+  SeparatedDesc separated{.file = json.require("file").path()};
+  const std::string model = json.get("model").choice("diffraction", {"sun", "fresnel", "diffraction"});
+  if (model == "sun") separated.model = SeparationModel::kSun;
+  if (model == "fresnel") separated.model = SeparationModel::kFresnel;
+  return separated;
+}
+
+decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string& type) {
+  if (type == "conductor") return parse_conductor(json);
+  if (type == "dielectric") {
+    return Dielectric{parse_optical_constant(json.require("eta"), true)};
+  }
+  if (type == "glossy") return parse_glossy(json);
+  if (type == "measured") return MeasuredDesc{json.require("file").path()};
+  if (type == "separated") return parse_separated(json);
+  return Lambert{parse_texture(json.require("reflectance"))};
+}
+
+struct Builder {
+  Material operator()(const MeasuredDesc& m) const { return MeasuredBrdf(read_measured(m.file)); }
+  Material operator()(const SeparatedDesc& s) const {
+    return SeparatedBrdf(std::make_shared<const SeparatedTables>(read_separated(s.file)), s.model);
+  }
+  template <typename Analytic>
+  Material operator()(const Analytic& material) const {
+    return material;
+  }
+};
+
+}  // namespace
+
+MaterialDesc parse_material(const JsonValue& json) {
+  MaterialDesc material;
+  material.where = json.where();
+  material.name = json.require("name").string();
+  const std::string type = json.require("type").choice(
+      "", {"lambert", "conductor", "dielectric", "glossy", "measured", "separated"});
+  if (type.empty()) return material;  // recorded; what the other keys should be is unknown
+  material.kind = parse_kind(json, type);
+  json.reject_unknown_keys();
+  return material;
+}
+
+MaterialDesc load_material(const std::filesystem::path& file) {
+  JsonDocument document = JsonDocument::load(file);
+  MaterialDesc material = parse_material(document.root());
+  document.throw_if_wrong();
+  return material;
+}
+
+Material build_material(const MaterialDesc& description) { return std::visit(Builder{}, description.kind); }
+
+}  // namespace spectrace
