@@ -31,8 +31,8 @@ class Warp2D {
   /// `p0`, `p1`: strictly increasing, at least one entry (checked); width, height >= 2; data.size() = the
   /// product of all, each finite and >= 0 (checked). With `normalize` each slice is scaled to integrate to
   /// 1 (a slice of zeros becomes uniform) and sample() and invert() may be called; without it only eval().
-  Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, int height, std::span<const Float> data,
-         bool normalize);
+  Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, int height,
+         std::span<const Float> data, bool normalize);
 
   /// Unit-square random numbers to a position of density eval(position). u in [0, 1]².
   [[nodiscard]] Sample sample(Vec2 u, WarpParams params = {}) const;
@@ -47,13 +47,27 @@ class Warp2D {
     std::array<Float, 4> weight{};
     int count = 0;
   };
+  /// A cell between two nodes of one axis, and how far into it.
+  struct Cell {
+    int index = 0;
+    Float fraction = 0;
+  };
   [[nodiscard]] Blend blend(WarpParams params) const;
+  static Cell cell_at(Float coordinate, int nodes);
+  [[nodiscard]] static Float blended(const std::vector<Float>& table, const Blend& b, std::size_t slice_size,
+                                     std::size_t offset);
+  [[nodiscard]] Float marginal(const Blend& b, int row) const;
+  [[nodiscard]] Float row_integral(const Blend& b, int row) const;
+  [[nodiscard]] Float conditional(const Blend& b, Cell row, int column) const;
+  [[nodiscard]] Float value(const Blend& b, Cell row, int column) const;
+  [[nodiscard]] Float value(const Blend& b, Vec2 position) const;
+  void normalize_slice(std::size_t slice);
 
   std::vector<Float> p0_, p1_;
   int width_ = 0, height_ = 0;
   std::vector<Float> data_;         // [slice][height][width]
-  std::vector<Float> marginal_;     // [slice][height]: integral over rows up to each node row
-  std::vector<Float> conditional_;  // [slice][height][width]: integral along each node row
+  std::vector<Float> marginal_;     // [slice][height]: mass below each node row; the last is 1
+  std::vector<Float> conditional_;  // [slice][height][width]: integral along each node row, from x = 0
 };
 
 }  // namespace spectrace

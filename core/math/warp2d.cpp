@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/math/warp2d.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/math/math.h"
+
+namespace spectrace {
+namespace {
+
+/// Written so that NaN becomes 0 and not an index out of the table.
+Float clamp_unit(Float x) { return x > 0 ? std::min(x, Float(1)) : Float(0); }
+
+bool is_axis(std::span<const Float> p) {
+  if (p.empty() || !std::all_of(p.begin(), p.end(), [](Float x) { return std::isfinite(x); })) return false;
+  return std::adjacent_find(p.begin(), p.end(), [](Float a, Float b) { return a >= b; }) == p.end();
+}
+
+/// The node at or below `x` and the weight of the next one; the end values hold outside.
+std::pair<std::size_t, Float> bracket(const std::vector<Float>& nodes, Float x) {
+  if (!(x > nodes.front())) return {0, 0};
+  if (x >= nodes.back()) return {nodes.size() - 1, 0};
+  const auto above = std::upper_bound(nodes.begin(), nodes.end(), x);
+  const auto i = static_cast<std::size_t>(above - nodes.begin()) - 1;
+  return {i, (x - nodes[i]) / (nodes[i + 1] - nodes[i])};
+}
+
+/// The last of the cells 0 ... cells - 1 whose cumulative start is at most `mass`: of cells without mass it
+/// picks none, as long as `mass` is below the total.
+template <typename Cumulative>
+int find_cell(int cells, Float mass, const Cumulative& cumulative) {
+  int low = 0, high = cells;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (cumulative(middle) <= mass ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The t in [0, 1] with a t + (b - a) t²/2 = area, for a density going linearly from a to b. In this form of
+/// the root nothing cancels, whether a = b or a = 0.
+Float invert_linear(Float a, Float b, Float area) {
+  const Float denominator = a + safe_sqrt(a * a + 2 * (b - a) * area);
+  return denominator > 0 ? clamp_unit(2 * area / denominator) : Float(0);
+}
+
+/// The area invert_linear() inverts.
+Float integrate_linear(Float a, Float b, Float t) { return t * (a + t * (b - a) / 2); }
+
+/// u · total kept below total: u = 1 must not fall into massless cells at the far end.
+Float target_mass(Float u, Float total) { return std::min(clamp_unit(u), kOneMinusEpsilon) * total; }
+
+}  // namespace
+
+Warp2D::Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, int height,
+               std::span<const Float> data, bool normalize)
+    : p0_(p0.begin(), p0.end()),
+      p1_(p1.begin(), p1.end()),
+      width_(width),
+      height_(height),
+      data_(data.begin(), data.end()) {
+  SPECTRACE_CHECK(is_axis(p0) && is_axis(p1));
+  SPECTRACE_CHECK(width >= 2 && height >= 2);
+  const std::size_t slices = p0.size() * p1.size();
+  SPECTRACE_CHECK(data.size() == slices * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  SPECTRACE_CHECK(std::all_of(data.begin(), data.end(), [](Float x) { return std::isfinite(x) && x >= 0; }));
+  if (!normalize) return;
+  marginal_.resize(slices * static_cast<std::size_t>(height));
+  conditional_.resize(data_.size());
+  for (std::size_t i = 0; i < slices; ++i) normalize_slice(i);
+}
+
+void Warp2D::normalize_slice(std::size_t slice) {
+  const auto w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+  Float* const data = data_.data() + slice * w * h;
+  Float* const conditional = conditional_.data() + slice * w * h;
+  Float* const marginal = marginal_.data() + slice * h;
+
+  // Trapezoids are exact for piecewise linear values; double, because float sums would shift the CDF by more
+  // than its own rounding.
+  const auto row_integral = [&](std::size_t y) {
+    double sum = 0;
+    for (std::size_t x = 0; x + 1 < w; ++x)
+      sum += 0.5 * (double(data[y * w + x]) + double(data[y * w + x + 1]));
+    return sum / double(w - 1);
+  };
+  std::vector<double> rows(h);
+  for (std::size_t y = 0; y < h; ++y) rows[y] = row_integral(y);
+  double total = 0;
+  for (std::size_t y = 0; y + 1 < h; ++y) total += 0.5 * (rows[y] + rows[y + 1]) / double(h - 1);
+  if (total == 0) {
+    std::fill(data, data + w * h, Float(1));
+    std::fill(rows.begin(), rows.end(), 1.0);
+    total = 1;
+  }
+
+  double mass = 0;
+  for (std::size_t y = 0; y < h; ++y) {
+    if (y > 0) mass += 0.5 * (rows[y - 1] + rows[y]) / double(h - 1) / total;
+    marginal[y] = static_cast<Float>(std::min(mass, 1.0));
+    double along = 0;
+    double previous = 0;
+    for (std::size_t x = 0; x < w; ++x) {
+      const double value = double(data[y * w + x]) / total;
+      if (x > 0) along += 0.5 * (previous + value) / double(w - 1);
+      conditional[y * w + x] = static_cast<Float>(along);
+      data[y * w + x] = static_cast<Float>(value);
+      previous = value;
+    }
+  }
+}
+
+Warp2D::Blend Warp2D::blend(WarpParams params) const {
+  const auto [i0, t0] = bracket(p0_, params.p0);
+  const auto [i1, t1] = bracket(p1_, params.p1);
+  Blend b;
+  const auto add = [&b](std::size_t slice, Float weight) {
+    if (weight <= 0) return;  // also keeps the neighbour of the last node out
+    b.slice[static_cast<std::size_t>(b.count)] = slice;
+    b.weight[static_cast<std::size_t>(b.count)] = weight;
+    ++b.count;
+  };
+  const std::size_t n1 = p1_.size();
+  add(i0 * n1 + i1, (1 - t0) * (1 - t1));
+  add(i0 * n1 + i1 + 1, (1 - t0) * t1);
+  add((i0 + 1) * n1 + i1, t0 * (1 - t1));
+  add((i0 + 1) * n1 + i1 + 1, t0 * t1);
+  return b;
+}
+
+Warp2D::Cell Warp2D::cell_at(Float coordinate, int nodes) {
+  const Float scaled = clamp_unit(coordinate) * Float(nodes - 1);
+  const int index = std::min(static_cast<int>(scaled), nodes - 2);
+  return {index, scaled - Float(index)};
+}
+
+Float Warp2D::blended(const std::vector<Float>& table, const Blend& b, std::size_t slice_size,
+                      std::size_t offset) {
+  Float sum = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(b.count); ++k) {
+    sum += b.weight[k] * table[b.slice[k] * slice_size + offset];
+  }
+  return sum;
+}
+
+Float Warp2D::marginal(const Blend& b, int row) const {
+  return blended(marginal_, b, static_cast<std::size_t>(height_), static_cast<std::size_t>(row));
+}
+
+Float Warp2D::row_integral(const Blend& b, int row) const { return conditional(b, {row, 0}, width_ - 1); }
+
+Float Warp2D::conditional(const Blend& b, Cell row, int column) const {
+  const auto size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  const auto offset = static_cast<std::size_t>(row.index * width_ + column);
+  const Float below = blended(conditional_, b, size, offset);
+  if (row.fraction == 0) return below;
+  return lerp(below, blended(conditional_, b, size, offset + static_cast<std::size_t>(width_)), row.fraction);
+}
+
+Float Warp2D::value(const Blend& b, Cell row, int column) const {
+  const auto size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  const auto offset = static_cast<std::size_t>(row.index * width_ + column);
+  return lerp(blended(data_, b, size, offset),
+              blended(data_, b, size, offset + static_cast<std::size_t>(width_)), row.fraction);
+}
+
+Float Warp2D::value(const Blend& b, Vec2 position) const {
+  const Cell row = cell_at(position.y, height_);
+  const Cell column = cell_at(position.x, width_);
+  return lerp(value(b, row, column.index), value(b, row, column.index + 1), column.fraction);
+}
+
+Float Warp2D::eval(Vec2 position, WarpParams params) const { return value(blend(params), position); }
+
+Warp2D::Sample Warp2D::sample(Vec2 u, WarpParams params) const {
+  SPECTRACE_DCHECK(!marginal_.empty());
+  const Blend b = blend(params);
+
+  const Float mass = target_mass(u.y, marginal(b, height_ - 1));
+  Cell row{find_cell(height_ - 1, mass, [&](int y) { return marginal(b, y); }), 0};
+  row.fraction = invert_linear(row_integral(b, row.index), row_integral(b, row.index + 1),
+                               (mass - marginal(b, row.index)) * Float(height_ - 1));
+
+  const Float along = target_mass(u.x, conditional(b, row, width_ - 1));
+  Cell column{find_cell(width_ - 1, along, [&](int x) { return conditional(b, row, x); }), 0};
+  column.fraction = invert_linear(value(b, row, column.index), value(b, row, column.index + 1),
+                                  (along - conditional(b, row, column.index)) * Float(width_ - 1));
+
+  const Vec2 position{(Float(column.index) + column.fraction) / Float(width_ - 1),
+                      (Float(row.index) + row.fraction) / Float(height_ - 1)};
+  // At the rounded position, not at the cell's fractions: the same bits as eval() and invert() give.
+  return {position, value(b, position)};
+}
+
+Warp2D::Sample Warp2D::invert(Vec2 position, WarpParams params) const {
+  SPECTRACE_DCHECK(!marginal_.empty());
+  const Blend b = blend(params);
+  const Cell row = cell_at(position.y, height_);
+  const Cell column = cell_at(position.x, width_);
+
+  const Float mass = marginal(b, row.index) + integrate_linear(row_integral(b, row.index),
+                                                               row_integral(b, row.index + 1), row.fraction) /
+                                                  Float(height_ - 1);
+  const Float left = value(b, row, column.index), right = value(b, row, column.index + 1);
+  const Float along =
+      conditional(b, row, column.index) + integrate_linear(left, right, column.fraction) / Float(width_ - 1);
+  const Float row_total = conditional(b, row, width_ - 1);
+
+  // A row without mass has no conditional; sample() never lands inside one, the identity is as good as any.
+  const Vec2 u{row_total > 0 ? clamp_unit(along / row_total) : clamp_unit(position.x),
+               clamp_unit(mass / marginal(b, height_ - 1))};
+  return {u, lerp(left, right, column.fraction)};
+}
+
+}  // namespace spectrace
