@@ -20,15 +20,16 @@ enum class PathDimension : std::uint32_t {
 };
 enum class VertexDimension : std::uint32_t {
   kLightChoice = 0,
-  kLight = 1,       // 2
+  kLight = 1,  // 2
   kBsdfLobe = 3,
-  kBsdf = 4,        // 2
+  kBsdf = 4,  // 2
   kRoulette = 6,
   kMask = 7,
   kEnd = 8,
 };
 
-/// The numbers of one sample of one pixel, each in [0, 1).
+/// The numbers of one sample of one pixel, each in [0, 1). Independent of each other, except that over the
+/// samples of one pixel kWavelength is stratified and kPixel is a low-discrepancy set.
 class Sampler {
  public:
   /// `pixel` = y · width + x of the whole image, crop windows included.
@@ -37,7 +38,9 @@ class Sampler {
   [[nodiscard]] Float get1d(PathDimension d) const { return number(static_cast<std::uint32_t>(d)); }
   [[nodiscard]] Vec2 get2d(PathDimension d) const { return pair(static_cast<std::uint32_t>(d)); }
   /// `vertex` = 0 for the first surface hit.
-  [[nodiscard]] Float get1d(std::uint32_t vertex, VertexDimension d) const { return number(index(vertex, d)); }
+  [[nodiscard]] Float get1d(std::uint32_t vertex, VertexDimension d) const {
+    return number(index(vertex, d));
+  }
   [[nodiscard]] Vec2 get2d(std::uint32_t vertex, VertexDimension d) const { return pair(index(vertex, d)); }
 
  private:
@@ -46,10 +49,15 @@ class Sampler {
            vertex * static_cast<std::uint32_t>(VertexDimension::kEnd) + static_cast<std::uint32_t>(d);
   }
   [[nodiscard]] Float number(std::uint32_t dimension) const;
-  [[nodiscard]] Vec2 pair(std::uint32_t dimension) const { return {number(dimension), number(dimension + 1)}; }
+  [[nodiscard]] std::uint64_t bits(std::uint32_t dimension) const;
+  [[nodiscard]] std::uint64_t pixel_offset(std::uint32_t dimension) const;
+  [[nodiscard]] Vec2 pair(std::uint32_t dimension) const {
+    return {number(dimension), number(dimension + 1)};
+  }
 
-  std::uint64_t key_;
+  std::uint64_t pixel_key_;
   std::uint64_t sample_;
+  std::uint64_t sample_key_;
 };
 
 }  // namespace spectrace
