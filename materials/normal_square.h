@@ -14,7 +14,7 @@ namespace spectrace {
 /// azimuth is 0. Exact to rounding at small θ, since θ comes from atan2.
 inline Vec2 normal_to_square(Vec3 n) {
   const Float theta = std::atan2(std::hypot(n.x, n.y), n.z);
-  return {std::sqrt(theta * (2 / kPi)), (std::atan2(n.y, n.x) + kPi) * (kInvPi / 2)};
+  return {std::sqrt(std::min(theta * (2 / kPi), Float(1))), (std::atan2(n.y, n.x) + kPi) * (kInvPi / 2)};
 }
 
 /// The inverse, for `s` in [0, 1]².

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/chi_square.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+namespace spectrace::test {
+
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+/// Below this many expected samples Pearson's statistic is no chi-square: such cells are pooled (Cochran
+/// 1954).
+constexpr double kMinExpected = 5;
+
+/// A direction as (s, φ): s = sqrt(1 - cosθ) in [0, 1], exact for lobes around the normal where cosθ has lost
+/// all digits; dω = 2 s ds dφ.
+struct CellPoint {
+  double s = 0, phi = 0;
+};
+
+class Chart {
+ public:
+  explicit Chart(Vec3 zero) : offset_(std::atan2(double(zero.y), double(zero.x))) {}
+
+  [[nodiscard]] CellPoint to_cell(Vec3 w) const {
+    const double r2 = double(w.x) * w.x + double(w.y) * w.y;
+    const double t = w.z < 0.5 ? 1 - double(w.z) : r2 / (1 + double(w.z));
+    const double phi = std::remainder(std::atan2(double(w.y), double(w.x)) - offset_, 2 * kPiD);
+    return {std::sqrt(std::clamp(t, 0.0, 1.0)), phi};
+  }
+  [[nodiscard]] Vec3 to_direction(CellPoint p) const {
+    const double sin_theta = p.s * std::sqrt(2 - p.s * p.s), phi = p.phi + offset_;
+    return {static_cast<Float>(sin_theta * std::cos(phi)), static_cast<Float>(sin_theta * std::sin(phi)),
+            static_cast<Float>(1 - p.s * p.s)};
+  }
+
+ private:
+  double offset_;
+};
+
+struct Cell {
+  double s0 = 0, s1 = 1, phi0 = -kPiD, phi1 = kPiD;
+};
+
+/// A cell and the box of its pilots: where most of its mass lies.
+struct PilotCell {
+  Cell cell, box;
+};
+
+/// Cuts the hemisphere at medians of pilot samples until few are left in each cell.
+class CellTree {
+ public:
+  CellTree(std::vector<CellPoint> pilots, std::size_t pilots_per_cell) {
+    build(pilots.begin(), pilots.end(), Cell{}, pilots_per_cell);
+  }
+  [[nodiscard]] const std::vector<PilotCell>& cells() const { return cells_; }
+  [[nodiscard]] std::size_t find(CellPoint p) const {
+    std::size_t node = 0;
+    while (nodes_[node].cell < 0) {
+      const double x = nodes_[node].along_s ? p.s : p.phi;
+      node = x < nodes_[node].split ? node + 1 : nodes_[node].upper;
+    }
+    return static_cast<std::size_t>(nodes_[node].cell);
+  }
+
+ private:
+  using Iterator = std::vector<CellPoint>::iterator;
+  struct Node {
+    bool along_s = true;
+    double split = 0;
+    std::size_t upper = 0;  // the lower child follows its parent
+    long cell = -1;
+  };
+
+  void build(Iterator begin, Iterator end, Cell cell, std::size_t pilots_per_cell) {
+    const std::size_t index = nodes_.size();
+    nodes_.emplace_back();
+    const auto count = static_cast<std::size_t>(end - begin);
+    bool along_s = true;
+    double split = 0;
+    bool splits = count > pilots_per_cell;
+    if (splits) {
+      along_s = longer_along_s(begin, end);
+      const auto coordinate = [along_s](CellPoint p) { return along_s ? p.s : p.phi; };
+      const Iterator middle = begin + static_cast<std::ptrdiff_t>(count / 2);
+      std::nth_element(begin, middle, end,
+                       [&](CellPoint a, CellPoint b) { return coordinate(a) < coordinate(b); });
+      split = coordinate(*middle);
+      const Iterator bound = std::partition(begin, end, [&](CellPoint p) { return coordinate(p) < split; });
+      splits = bound != begin && bound != end;  // all pilots alike: a lobe of no width
+      if (splits) {
+        Cell lower = cell, upper = cell;
+        (along_s ? lower.s1 : lower.phi1) = split;
+        (along_s ? upper.s0 : upper.phi0) = split;
+        build(begin, bound, lower, pilots_per_cell);
+        nodes_[index] = {along_s, split, nodes_.size(), -1};
+        build(bound, end, upper, pilots_per_cell);
+      }
+    }
+    if (!splits) {
+      nodes_[index].cell = static_cast<long>(cells_.size());
+      cells_.push_back({cell, begin == end ? cell : box_of(begin, end)});
+    }
+  }
+
+  static Cell box_of(Iterator begin, Iterator end) {
+    Cell box{begin->s, begin->s, begin->phi, begin->phi};
+    for (Iterator p = begin; p != end; ++p) {
+      box.s0 = std::min(box.s0, p->s), box.s1 = std::max(box.s1, p->s);
+      box.phi0 = std::min(box.phi0, p->phi), box.phi1 = std::max(box.phi1, p->phi);
+    }
+    return box;
+  }
+
+  static bool longer_along_s(Iterator begin, Iterator end) {
+    const Cell box = box_of(begin, end);
+    const double s = (box.s0 + box.s1) / 2;  // dθ = 2 ds / sqrt(2 - s²), sinθ = s sqrt(2 - s²)
+    return 2 * (box.s1 - box.s0) > s * (2 - s * s) * (box.phi1 - box.phi0);
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<PilotCell> cells_;
+};
+
+/// Gauss-Legendre with 4 x 4 points a cell, compared with four quarters of it, and so on.
+class Quadrature {
+ public:
+  Quadrature(const DirectionDensity& density, const Chart& chart, double relative, double absolute)
+      : density_(density), chart_(chart), relative_(relative), absolute_(absolute) {}
+
+  /// A cell at the skirt of a lobe is far wider than its mass, and a rule that looks for it by halving may
+  /// see nothing at all. So the box of the pilots comes first, then strips that double in width away from it.
+  double integrate(const PilotCell& c) {
+    double sum = 0;
+    const std::vector<double> s = breakpoints(c.cell.s0, c.box.s0, c.box.s1, c.cell.s1);
+    const std::vector<double> phi = breakpoints(c.cell.phi0, c.box.phi0, c.box.phi1, c.cell.phi1);
+    for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+      for (std::size_t j = 0; j + 1 < phi.size(); ++j) {
+        const Cell part{s[i], s[i + 1], phi[j], phi[j + 1]};
+        sum += refine(part, gauss(part), 0);
+      }
+    }
+    return sum;
+  }
+  double error() const { return error_; }
+  std::size_t evaluations() const { return evaluations_; }
+
+ private:
+  // 4^7 quarters resolve a peak of 1/128 of the cell's side; cells already follow the pilots.
+  static constexpr int kMaxDepth = 7;
+
+  static std::vector<double> breakpoints(double low, double box_low, double box_high, double high) {
+    const double width = std::max(box_high - box_low, 1e-3 * (high - low));
+    std::vector<double> points;
+    for (double step = width, x = box_low - step / 4; x > low; x -= step, step *= 2) points.push_back(x);
+    points.push_back(low);
+    std::reverse(points.begin(), points.end());
+    for (double step = width, x = box_high + step / 4; x < high; x += step, step *= 2) points.push_back(x);
+    points.push_back(high);
+    return points;
+  }
+
+  double refine(const Cell& c, double coarse, int depth) {
+    const double s = (c.s0 + c.s1) / 2, phi = (c.phi0 + c.phi1) / 2;
+    const std::array<Cell, 4> quarters{
+        {{c.s0, s, c.phi0, phi}, {s, c.s1, c.phi0, phi}, {c.s0, s, phi, c.phi1}, {s, c.s1, phi, c.phi1}}};
+    std::array<double, 4> parts{};
+    double fine = 0;
+    for (int i = 0; i < 4; ++i) fine += parts[i] = gauss(quarters[i]);
+    const double difference = std::abs(fine - coarse);
+    if (difference <= relative_ * fine + std::ldexp(absolute_, -depth) || depth == kMaxDepth) {
+      error_ += difference;
+      return fine;
+    }
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) sum += refine(quarters[i], parts[i], depth + 1);
+    return sum;
+  }
+
+  double gauss(const Cell& c) {
+    static constexpr std::array<double, 4> kNodes{-0.8611363115940526, -0.3399810435848563,
+                                                  0.3399810435848563, 0.8611363115940526};
+    static constexpr std::array<double, 4> kWeights{0.3478548451374538, 0.6521451548625461,
+                                                    0.6521451548625461, 0.3478548451374538};
+    const double hs = (c.s1 - c.s0) / 2, hp = (c.phi1 - c.phi0) / 2;
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+      const double s = c.s0 + hs * (1 + kNodes[i]);
+      for (int j = 0; j < 4; ++j) {
+        const double phi = c.phi0 + hp * (1 + kNodes[j]);
+        sum += kWeights[i] * kWeights[j] * 2 * s * density_(chart_.to_direction({s, phi}));
+      }
+    }
+    evaluations_ += 16;
+    return sum * hs * hp;
+  }
+
+  const DirectionDensity& density_;
+  const Chart& chart_;
+  double relative_, absolute_;
+  double error_ = 0;
+  std::size_t evaluations_ = 0;
+};
+
+struct CellCount {
+  double expected = 0, observed = 0;
+};
+
+/// Pools cells that expect too few samples, with the least of the others where that is still too few.
+void pool(std::vector<CellCount>& cells) {
+  std::sort(cells.begin(), cells.end(), [](CellCount a, CellCount b) { return a.expected < b.expected; });
+  CellCount pooled = cells.front();
+  auto next = cells.begin() + 1;
+  for (; next != cells.end() && (next->expected < kMinExpected || pooled.expected < kMinExpected); ++next) {
+    pooled.expected += next->expected;
+    pooled.observed += next->observed;
+  }
+  cells.erase(cells.begin() + 1, next);
+  cells.front() = pooled;
+}
+
+/// Regularised upper incomplete gamma function: series below, continued fraction (Lentz) above the mean.
+double upper_gamma(double a, double x) {
+  constexpr double kTiny = 1e-300, kPrecision = 1e-14;
+  if (x <= 0) return 1;
+  const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
+  if (x < a + 1) {
+    double term = 1 / a, sum = term;
+    for (double n = a + 1; std::abs(term) > kPrecision * sum; ++n) sum += term *= x / n;
+    return 1 - scale * sum;
+  }
+  double b = x + 1 - a, c = 1 / kTiny, d = 1 / b, h = d;
+  for (double i = 1;; ++i) {
+    const double an = -i * (i - a);
+    b += 2;
+    d = an * d + b;
+    d = 1 / (std::abs(d) < kTiny ? kTiny : d);
+    c = b + an / c;
+    c = std::abs(c) < kTiny ? kTiny : c;
+    const double delta = d * c;
+    h *= delta;
+    if (std::abs(delta - 1) < kPrecision) return scale * h;
+  }
+}
+
+}  // namespace
+
+double chi_square_p_value(double statistic, double degrees_of_freedom) {
+  if (!std::isfinite(statistic)) return 0;
+  return upper_gamma(degrees_of_freedom / 2, statistic / 2);
+}
+
+double sidak_level(double alpha, std::size_t trials) {
+  return -std::expm1(std::log1p(-alpha) / static_cast<double>(trials));
+}
+
+std::uint64_t TestRandom::next() {
+  state_ += 0x9e3779b97f4a7c15U;
+  std::uint64_t z = state_;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  return z ^ (z >> 31);
+}
+
+Float TestRandom::uniform() { return static_cast<Float>(next() >> 40) * Float(0x1p-24); }
+
+std::string SamplingTestResult::text() const {
+  std::ostringstream out;
+  out << "chi2 " << statistic << " over " << degrees_of_freedom << " degrees of freedom, p = " << p_value
+      << "; kept " << kept << ", integral " << integral << " +- " << integral_error
+      << ", p = " << p_value_kept << "; " << below_horizon << " below the horizon; " << cells << " cells, "
+      << evaluations << " density evaluations";
+  return out.str();
+}
+
+SamplingTestResult test_sampling(const DrawDirection& draw, const DirectionDensity& density,
+                                 const SamplingTestOptions& options) {
+  const Chart chart(options.azimuth_zero);
+  TestRandom random(options.seed);
+  std::vector<CellPoint> pilots;
+  for (std::size_t i = 0; i < options.pilots; ++i) {
+    if (const std::optional<Vec3> w = draw(random)) pilots.push_back(chart.to_cell(*w));
+  }
+  const CellTree tree(std::move(pilots), options.pilots_per_cell);
+
+  SamplingTestResult result;
+  result.cells = tree.cells().size();
+  std::vector<CellCount> counts(result.cells);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < options.samples; ++i) {
+    const std::optional<Vec3> w = draw(random);
+    if (!w) continue;
+    ++kept;
+    if (!(w->z > 0)) ++result.below_horizon;
+    ++counts[tree.find(chart.to_cell(*w))].observed;
+  }
+  Quadrature quadrature(density, chart, options.quadrature_tolerance,
+                        options.quadrature_tolerance / static_cast<double>(result.cells) / 10);
+  for (std::size_t i = 0; i < result.cells; ++i) {
+    counts[i].expected = quadrature.integrate(tree.cells()[i]);
+    result.integral += counts[i].expected;
+  }
+  result.integral_error = quadrature.error();
+  result.evaluations = quadrature.evaluations();
+
+  const auto n = static_cast<double>(options.samples);
+  result.kept = static_cast<double>(kept) / n;
+  const double variance = std::max(result.kept * (1 - result.kept), 1 / n) / n;
+  const double excess = std::max(std::abs(result.kept - result.integral) - result.integral_error, 0.0);
+  result.p_value_kept = std::erfc(excess / std::sqrt(2 * variance));
+
+  if (!(result.integral > 0)) return result;  // nothing to draw: told apart by p_value_kept
+  for (CellCount& c : counts) c.expected *= static_cast<double>(kept) / result.integral;
+  pool(counts);
+  for (const CellCount& c : counts) {
+    const double difference = c.observed - c.expected;
+    result.statistic += difference * difference / std::max(c.expected, 1e-3);
+  }
+  result.degrees_of_freedom = std::max(static_cast<double>(counts.size()) - 1, 1.0);
+  result.p_value = chi_square_p_value(result.statistic, result.degrees_of_freedom);
+  return result;
+}
+
+}  // namespace spectrace::test
