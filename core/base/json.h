@@ -33,13 +33,14 @@ inline constexpr NumberRange kPositive{.min = 0, .min_open = true};
 inline constexpr NumberRange kNonNegative{.min = 0};
 inline constexpr NumberRange kUnitInterval{.min = 0, .max = 1};
 
-class JsonDocument;
+struct JsonState;  // what a document holds (json_state.h)
 
 /// A place in a document, or the lack of one (`exists() == false`) below an absent key. A read that fails
 /// records a Diagnostic in the document and returns `fallback`, so that parsing goes on and finds the rest.
 /// Copies are cheap; a value must not outlive its document.
 class JsonValue {
  public:
+  JsonValue() = default;  ///< does not exist
   [[nodiscard]] bool exists() const;
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] bool is_array() const;
@@ -63,14 +64,16 @@ class JsonValue {
   [[nodiscard]] bool boolean(bool fallback) const;
   [[nodiscard]] std::string string(std::string_view fallback = "") const;
   /// A string that must be one of `allowed`; recorded with the nearest one otherwise.
-  [[nodiscard]] std::string choice(std::string_view fallback, std::initializer_list<std::string_view> allowed) const;
-  /// Array of numbers whose length lies in [min_size, max_size].
+  [[nodiscard]] std::string choice(std::string_view fallback,
+                                   std::initializer_list<std::string_view> allowed) const;
+  /// Array of numbers whose length lies in [min_size, max_size]; empty where it is absent or wrong.
   [[nodiscard]] std::vector<double> numbers(std::size_t min_size, std::size_t max_size,
                                             NumberRange range = kAnyNumber) const;
   [[nodiscard]] Vec3 vec3(Vec3 fallback) const;
   /// Elements of an array; empty where it does not exist.
   [[nodiscard]] std::vector<JsonValue> elements() const;
-  /// A file name, relative to the document's own folder unless absolute. Existence is not checked.
+  /// A file name, relative to the document's own folder unless absolute; empty where it is absent or wrong.
+  /// Existence is not checked.
   [[nodiscard]] std::filesystem::path path() const;
 
   /// Records a problem at this place.
@@ -82,9 +85,15 @@ class JsonValue {
 
  private:
   friend class JsonDocument;
-  JsonDocument* document_ = nullptr;
-  const void* node_ = nullptr;  // owned by the document; null where absent
+  JsonValue(JsonState* state, const void* node) : state_(state), node_(node) {}
+  /// Records "expected <what>, got <the text there><hint>".
+  void expected(std::string_view what, std::string_view hint = "") const;
+  JsonState* state_ = nullptr;
+  const void* node_ = nullptr;  // owned by the state; null where absent
 };
+
+/// A file with more mistakes than this is not the file that was meant; the rest is only counted.
+inline constexpr std::size_t kMaxDiagnostics = 100;
 
 /// One parsed file.
 class JsonDocument {
@@ -99,16 +108,14 @@ class JsonDocument {
 
   [[nodiscard]] JsonValue root();
   [[nodiscard]] const std::string& file_name() const;
-  /// All diagnostics so far, ordered by place.
+  /// All diagnostics so far, ordered by place; the first kMaxDiagnostics of them that were found.
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const;
   /// Throws InputError with all of them, if there is any.
   void throw_if_wrong() const;
 
  private:
-  friend class JsonValue;
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-  explicit JsonDocument(std::unique_ptr<Impl> impl);
+  std::unique_ptr<JsonState> state_;  // values point to it, not to the document, which may move
+  explicit JsonDocument(std::unique_ptr<JsonState> state);
 };
 
 /// Writing JSON: a small builder, so that reports need no third-party type. Values keep insertion order.
