@@ -9,6 +9,7 @@
 
 #include "core/base/file.h"
 #include "core/base/json_state.h"
+#include "core/base/nearest.h"
 
 namespace spectrace {
 
@@ -102,13 +103,10 @@ void JsonValue::reject_unknown_keys() const {
     const bool is_known =
         std::find(object.asked.begin(), object.asked.end(), child->key) != object.asked.end();
     if (is_known || child->key.starts_with('$')) continue;
-    const std::string nearest = nearest_name(child->key, object.asked);
-    std::string problem = fmt::format("unknown key \"{}\"", child->key);
-    if (!nearest.empty()) {
-      problem += fmt::format("; did you mean \"{}\"?", nearest);
-    } else if (!object.asked.empty()) {
-      problem += fmt::format("; known here: {}", quoted_list(object.asked));
-    }
+    std::string hint = suggestion(child->key, object.asked);
+    if (hint.empty() && !object.asked.empty())
+      hint = fmt::format("; known here: {}", quoted_list(object.asked));
+    std::string problem = fmt::format("unknown key \"{}\"{}", child->key, hint);
     state_->add(child->key_offset, json_pointer(*child), std::move(problem));
   }
 }
@@ -165,9 +163,8 @@ std::string JsonValue::choice(std::string_view fallback,
   const std::vector<std::string> names(allowed.begin(), allowed.end());
   const std::string text = node_of(node_).text;
   if (is_string() && std::find(names.begin(), names.end(), text) != names.end()) return text;
-  const std::string nearest = is_string() ? nearest_name(text, names) : "";
   expected(fmt::format("{}{}", names.size() == 1 ? "" : "one of ", quoted_list(names)),
-           nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest));
+           is_string() ? suggestion(text, names) : "");
   return std::string(fallback);
 }
 

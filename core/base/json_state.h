@@ -57,7 +57,4 @@ struct JsonState {
 /// Fills nodes and root from text; faults go to the diagnostics.
 void parse_json(JsonState& state);
 
-/// The candidate with the smallest edit distance to `name`, or "" where none is near enough to be meant.
-[[nodiscard]] std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
-
 }  // namespace spectrace
