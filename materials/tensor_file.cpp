@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "materials/tensor_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "materials/foreign_bsdf.h"
+
+namespace spectrace {
+
+static_assert(std::endian::native == std::endian::little,
+              "tensor files are little endian, read without swaps");
+
+namespace {
+
+constexpr std::string_view kMagic{"tensor_file\0", 12};  // the terminating zero belongs to it
+constexpr std::uint8_t kMajorVersion = 1, kMinorVersion = 0;
+constexpr std::size_t kAlignment = 8;       // of field data: what the database's own files keep
+constexpr std::uint32_t kMaxFields = 4096;  // real files: 13; keeps the search for duplicates short
+constexpr int kMaxDimensions = 32;          // numpy's limit; keeps messages to a line
+constexpr std::size_t kHeadSize = kMagic.size() + 2 + sizeof(std::uint32_t);
+
+/// For messages: control and non-ASCII bytes as \xNN, so that a hostile name cannot break the line.
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const unsigned char c : text) {
+    if (c >= 0x20 && c < 0x7f && c != '"' && c != '\\') {
+      out += static_cast<char>(c);
+    } else {
+      out += fmt::format("\\x{:02x}", c);
+    }
+  }
+  return out;
+}
+
+bool is_plain_name(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7f; });
+}
+
+std::string at_byte(std::uint64_t offset, std::string_view field = {}) {
+  return field.empty() ? fmt::format("byte {}", offset) : fmt::format("byte {}: field \"{}\"", offset, field);
+}
+
+/// nullopt where the product does not fit.
+std::optional<std::uint64_t> product(std::span<const std::uint64_t> shape) {
+  if (std::find(shape.begin(), shape.end(), 0) != shape.end()) return 0;
+  std::uint64_t n = 1;
+  for (const std::uint64_t extent : shape) {
+    if (n > std::numeric_limits<std::uint64_t>::max() / extent) return std::nullopt;
+    n *= extent;
+  }
+  return n;
+}
+
+[[noreturn]] void refuse_magic(std::span<const std::byte> bytes, const std::string& file_name) {
+  std::string problem = R"(expected a tensor file of the EPFL material database ("tensor_file"), found )";
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (const auto foreign = foreign_bsdf(text); !foreign.empty()) {
+    problem += foreign;
+  } else if (bytes.empty()) {
+    problem += "an empty file";
+  } else if (kMagic.starts_with(text)) {
+    problem += fmt::format("its first {} bytes only: truncated", bytes.size());
+  } else {
+    problem += fmt::format("\"{}\"", printable(text.substr(0, kMagic.size())));
+  }
+  throw InputError(file_name, at_byte(0), problem);
+}
+
+/// Reads the header front to back; every read is checked against the end of the file.
+class HeaderCursor {
+ public:
+  HeaderCursor(std::span<const std::byte> bytes, const std::string& file_name)
+      : bytes_(bytes), file_name_(file_name) {}
+
+  template <typename T>
+  T number(std::string_view what) {
+    T value;
+    std::memcpy(&value, take(sizeof(T), what).data(), sizeof(T));
+    return value;
+  }
+  std::string_view text(std::size_t size, std::string_view what) {
+    const auto raw = take(size, what);
+    return {reinterpret_cast<const char*>(raw.data()), raw.size()};
+  }
+  [[nodiscard]] std::size_t position() const { return position_; }
+  [[nodiscard]] std::size_t remaining() const { return bytes_.size() - position_; }
+  [[noreturn]] void fail(std::size_t position, std::string problem) const {
+    throw InputError(file_name_, at_byte(position, field_), std::move(problem));
+  }
+  void enter_field(std::string name) { field_ = std::move(name); }
+
+ private:
+  std::span<const std::byte> take(std::size_t size, std::string_view what) {
+    if (size > remaining()) {
+      fail(position_,
+           fmt::format("truncated: {} needs {} bytes, the file ends after {}", what, size, remaining()));
+    }
+    position_ += size;
+    return bytes_.subspan(position_ - size, size);
+  }
+
+  std::span<const std::byte> bytes_;
+  const std::string& file_name_;
+  std::size_t position_ = 0;
+  std::string field_;
+};
+
+/// One field's entry of the header; its bytes are not copied yet.
+Tensor read_entry(HeaderCursor& in, std::span<const std::byte> bytes) {
+  in.enter_field("");
+  const std::size_t begin = in.position();
+  const auto name_size = in.number<std::uint16_t>("a field's name length");
+  const std::string_view name = in.text(name_size, "a field's name");
+  if (!is_plain_name(name)) {
+    in.fail(begin,
+            fmt::format("field name \"{}\": expected printable ASCII without spaces", printable(name)));
+  }
+  in.enter_field(std::string(name));
+
+  Tensor tensor;
+  tensor.name = name;
+  const auto dimensions = in.number<std::uint16_t>("the number of dimensions");
+  const std::size_t type_at = in.position();
+  const auto type = in.number<std::uint8_t>("the element type");
+  if (type < static_cast<std::uint8_t>(TensorType::kU8) ||
+      type > static_cast<std::uint8_t>(TensorType::kF64)) {
+    in.fail(type_at, fmt::format("element type {}, expected 1 (u8) to 11 (f64)", type));
+  }
+  tensor.type = static_cast<TensorType>(type);
+  const std::size_t offset_at = in.position();
+  tensor.offset = in.number<std::uint64_t>("the data offset");
+  const std::size_t shape_at = in.position();
+  if (dimensions > kMaxDimensions) {
+    in.fail(shape_at, fmt::format("{} dimensions, expected at most {}", dimensions, kMaxDimensions));
+  }
+  if (dimensions * sizeof(std::uint64_t) > in.remaining()) {
+    in.fail(shape_at,
+            fmt::format("truncated: a shape of {} dimensions does not fit in the file", dimensions));
+  }
+  for (int d = 0; d < dimensions; ++d) tensor.shape.push_back(in.number<std::uint64_t>("the shape"));
+
+  const auto count = product(tensor.shape);
+  if (!count || *count > bytes.size() / size_of(tensor.type)) {
+    in.fail(shape_at, fmt::format("shape {} of {} is larger than the file ({} bytes)", tensor.shape_text(),
+                                  name_of(tensor.type), bytes.size()));
+  }
+  const std::size_t size = *count * size_of(tensor.type);
+  if (tensor.offset > bytes.size() || size > bytes.size() - tensor.offset) {
+    in.fail(offset_at,
+            fmt::format("data at byte {} with {} bytes reach beyond the end of the file ({} bytes)",
+                        tensor.offset, size, bytes.size()));
+  }
+  return tensor;
+}
+
+/// Without this a small file could ask for its bytes many times over.
+void refuse_overlaps(const std::vector<Tensor>& tensors, std::size_t header_size,
+                     const std::string& file_name) {
+  std::vector<const Tensor*> by_offset;
+  for (const Tensor& tensor : tensors) {
+    if (tensor.count() > 0) by_offset.push_back(&tensor);
+  }
+  std::sort(by_offset.begin(), by_offset.end(),
+            [](const Tensor* a, const Tensor* b) { return a->offset < b->offset; });
+  std::uint64_t end = header_size;
+  std::string previous = "header";
+  for (const Tensor* tensor : by_offset) {
+    if (tensor->offset < end) {
+      throw InputError(file_name, at_byte(tensor->offset, tensor->name),
+                       fmt::format("its data overlap the {}, which ends at byte {}", previous, end));
+    }
+    end = tensor->offset + tensor->count() * size_of(tensor->type);
+    previous = fmt::format("field \"{}\"", tensor->name);
+  }
+}
+
+/// IEEE 754 binary16.
+float half_to_float(std::uint16_t half) {
+  const int exponent = (half >> 10) & 0x1f;
+  const int mantissa = half & 0x3ff;
+  float magnitude = 0;
+  if (exponent == 0x1f) {
+    magnitude =
+        mantissa != 0 ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+  } else if (exponent == 0) {
+    magnitude = std::ldexp(static_cast<float>(mantissa), -24);
+  } else {
+    magnitude = std::ldexp(static_cast<float>(mantissa + 0x400), exponent - 25);
+  }
+  return (half & 0x8000) != 0 ? -magnitude : magnitude;
+}
+
+template <typename T, typename Convert>
+std::vector<float> convert(std::span<const std::byte> bytes, Convert to_float) {
+  std::vector<float> out(bytes.size() / sizeof(T));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    T value;
+    std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
+    out[i] = to_float(value);
+  }
+  return out;
+}
+
+template <typename T>
+requires std::is_arithmetic_v<T>
+void append(std::vector<std::byte>& out, T value) {
+  const auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+  out.insert(out.end(), raw.begin(), raw.end());
+}
+void append(std::vector<std::byte>& out, std::string_view text) {
+  const auto raw = std::as_bytes(std::span(text));
+  out.insert(out.end(), raw.begin(), raw.end());
+}
+
+constexpr std::size_t aligned(std::size_t position) {
+  return (position + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+}  // namespace
+
+std::size_t size_of(TensorType type) {
+  switch (type) {
+    case TensorType::kU8:
+    case TensorType::kI8:
+      return 1;
+    case TensorType::kU16:
+    case TensorType::kI16:
+    case TensorType::kF16:
+      return 2;
+    case TensorType::kU32:
+    case TensorType::kI32:
+    case TensorType::kF32:
+      return 4;
+    case TensorType::kU64:
+    case TensorType::kI64:
+    case TensorType::kF64:
+      return 8;
+  }
+  throw InternalError("unknown tensor type");
+}
+
+std::string_view name_of(TensorType type) {
+  constexpr std::array<std::string_view, 11> kNames{"u8",  "i8",  "u16", "i16", "u32", "i32",
+                                                    "u64", "i64", "f16", "f32", "f64"};
+  return kNames.at(static_cast<std::size_t>(type) - 1);
+}
+
+std::size_t Tensor::count() const {
+  std::size_t n = 1;
+  for (const std::size_t extent : shape) n *= extent;
+  return n;
+}
+
+std::string Tensor::shape_text() const { return fmt::format("[{}]", fmt::join(shape, ",")); }
+
+std::vector<float> Tensor::floats() const {
+  if (type == TensorType::kF32) return convert<float>(bytes, [](float x) { return x; });
+  if (type == TensorType::kF64) return convert<double>(bytes, [](double x) { return static_cast<float>(x); });
+  SPECTRACE_CHECK(type == TensorType::kF16);
+  return convert<std::uint16_t>(bytes, half_to_float);
+}
+
+Tensor Tensor::from_floats(std::string name, std::vector<std::size_t> shape, std::span<const float> values) {
+  Tensor tensor{.name = std::move(name), .type = TensorType::kF32, .shape = std::move(shape), .bytes = {}};
+  SPECTRACE_CHECK(tensor.count() == values.size());
+  const auto raw = std::as_bytes(values);
+  tensor.bytes.assign(raw.begin(), raw.end());
+  return tensor;
+}
+
+Tensor Tensor::from_text(std::string name, std::string_view text) {
+  Tensor tensor{.name = std::move(name), .type = TensorType::kU8, .shape = {text.size()}, .bytes = {}};
+  append(tensor.bytes, text);
+  return tensor;
+}
+
+bool TensorFile::has_magic(std::span<const std::byte> bytes) {
+  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
+}
+
+TensorFile TensorFile::read(const std::filesystem::path& file) {
+  return parse(read_file(file), file.string());
+}
+
+TensorFile TensorFile::parse(std::span<const std::byte> bytes, std::string file_name) {
+  if (!has_magic(bytes)) refuse_magic(bytes, file_name);
+  TensorFile out;
+  out.file_name_ = std::move(file_name);
+  HeaderCursor in(bytes, out.file_name_);
+  (void)in.text(kMagic.size(), "the magic");
+  const auto major = in.number<std::uint8_t>("the version");
+  const auto minor = in.number<std::uint8_t>("the version");
+  if (major != kMajorVersion || minor != kMinorVersion) {
+    in.fail(kMagic.size(), fmt::format("tensor file version {}.{}, expected {}.{}", major, minor,
+                                       kMajorVersion, kMinorVersion));
+  }
+  const auto fields = in.number<std::uint32_t>("the number of fields");
+  if (fields > kMaxFields) {
+    in.fail(kMagic.size() + 2, fmt::format("{} fields, expected at most {}", fields, kMaxFields));
+  }
+  for (std::uint32_t i = 0; i < fields; ++i) {
+    const std::size_t begin = in.position();
+    Tensor tensor = read_entry(in, bytes);
+    if (out.find(tensor.name) != nullptr) in.fail(begin, "a second field of this name");
+    out.tensors_.push_back(std::move(tensor));
+  }
+  refuse_overlaps(out.tensors_, in.position(), out.file_name_);
+  for (Tensor& tensor : out.tensors_) {
+    const auto raw = bytes.subspan(tensor.offset, tensor.count() * size_of(tensor.type));
+    tensor.bytes.assign(raw.begin(), raw.end());
+  }
+  return out;
+}
+
+const Tensor* TensorFile::find(std::string_view name) const {
+  const auto it =
+      std::find_if(tensors_.begin(), tensors_.end(), [&](const Tensor& t) { return t.name == name; });
+  return it == tensors_.end() ? nullptr : &*it;
+}
+
+const Tensor& TensorFile::require(std::string_view name, std::span<const TensorType> types,
+                                  std::span<const std::size_t> shape) const {
+  const Tensor* tensor = find(name);
+  if (tensor == nullptr) {
+    std::vector<std::string_view> present;
+    for (const Tensor& t : tensors_) present.push_back(t.name);
+    throw InputError(file_name_, fmt::format("field \"{}\"", name),
+                     fmt::format("missing; the file holds {}",
+                                 present.empty() ? "no field" : fmt::format("{}", fmt::join(present, ", "))));
+  }
+  if (std::find(types.begin(), types.end(), tensor->type) == types.end()) {
+    std::vector<std::string_view> names;
+    for (const TensorType type : types) names.push_back(name_of(type));
+    throw InputError(
+        file_name_, at_byte(tensor->offset, name),
+        fmt::format("element type {}, expected {}", name_of(tensor->type), fmt::join(names, " or ")));
+  }
+  const bool fits =
+      std::equal(shape.begin(), shape.end(), tensor->shape.begin(), tensor->shape.end(),
+                 [](std::size_t wanted, std::size_t found) { return wanted == 0 || wanted == found; });
+  if (!fits) {
+    std::vector<std::string> wanted;
+    for (const std::size_t extent : shape) wanted.push_back(extent == 0 ? "any" : fmt::format("{}", extent));
+    throw InputError(file_name_, at_byte(tensor->offset, name),
+                     fmt::format("shape {}, expected [{}]", tensor->shape_text(), fmt::join(wanted, ",")));
+  }
+  return *tensor;
+}
+
+void TensorFile::add(Tensor tensor) {
+  SPECTRACE_CHECK(is_plain_name(tensor.name) && find(tensor.name) == nullptr);
+  SPECTRACE_CHECK(tensor.bytes.size() == tensor.count() * size_of(tensor.type));
+  tensors_.push_back(std::move(tensor));
+}
+
+std::vector<std::byte> TensorFile::serialize() const {
+  std::size_t header_size = kHeadSize;
+  for (const Tensor& t : tensors_) {
+    header_size +=
+        sizeof(std::uint16_t) * 2 + 1 + sizeof(std::uint64_t) * (1 + t.shape.size()) + t.name.size();
+  }
+  std::vector<std::byte> out;
+  append(out, kMagic);
+  append(out, kMajorVersion);
+  append(out, kMinorVersion);
+  append(out, static_cast<std::uint32_t>(tensors_.size()));
+  std::size_t offset = aligned(header_size);
+  for (const Tensor& t : tensors_) {
+    append(out, static_cast<std::uint16_t>(t.name.size()));
+    append(out, t.name);
+    append(out, static_cast<std::uint16_t>(t.shape.size()));
+    append(out, static_cast<std::uint8_t>(t.type));
+    append(out, static_cast<std::uint64_t>(offset));
+    for (const std::size_t extent : t.shape) append(out, static_cast<std::uint64_t>(extent));
+    offset = aligned(offset + t.bytes.size());
+  }
+  for (const Tensor& t : tensors_) {
+    out.resize(aligned(out.size()));
+    out.insert(out.end(), t.bytes.begin(), t.bytes.end());
+  }
+  return out;
+}
+
+void TensorFile::write(const std::filesystem::path& file) const { write_file_atomically(file, serialize()); }
+
+}  // namespace spectrace
