@@ -2,6 +2,7 @@
 // The parts of the scene parser: each turns one JSON place into plain data and records what is wrong there.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,11 @@
 #include "renderer/scene_desc.h"
 
 namespace spectrace {
+
+/// What a Float can hold: larger numbers would become infinite on the light path.
+inline constexpr double kLargestFloat = std::numeric_limits<Float>::max();
+inline constexpr NumberRange kPositiveFloat{.min = 0, .max = kLargestFloat, .min_open = true};
+inline constexpr NumberRange kNonNegativeFloat{.min = 0, .max = kLargestFloat};
 
 /// What shapes may refer to.
 struct SceneNames {

@@ -26,7 +26,7 @@ EnvironmentDesc parse_environment(const JsonValue& json) {
     json.error("an environment needs a \"file\", a \"radiance\", or both");
   }
   light.radiance = parse_spectrum(radiance, SpectrumRole::kEmission, light.radiance);
-  light.scale = static_cast<Float>(json.get("scale").number(light.scale, kNonNegative));
+  light.scale = static_cast<Float>(json.get("scale").number(light.scale, kNonNegativeFloat));
   light.to_world = parse_transform(transform);
   if (!is_rotation(light.to_world)) {
     transform.error("an environment can only be rotated");

@@ -111,7 +111,7 @@ Transform parse_step(const JsonValue& json) {
 SphereDesc parse_sphere(const JsonValue& json) {
   SphereDesc sphere;
   sphere.center = json.get("center").vec3(sphere.center);
-  sphere.radius = static_cast<Float>(json.get("radius").number(sphere.radius, kPositive));
+  sphere.radius = static_cast<Float>(json.get("radius").number(sphere.radius, kPositiveFloat));
   return sphere;
 }
 

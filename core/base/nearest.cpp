@@ -64,7 +64,7 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
 
 std::string suggestion(std::string_view word, std::span<const std::string> known) {
   const auto name = nearest_name(word, known);
-  return name ? ", did you mean \"" + *name + "\"?" : "";
+  return name ? "; did you mean \"" + *name + "\"?" : "";
 }
 
 }  // namespace spectrace

@@ -13,7 +13,7 @@ namespace spectrace {
 /// `word`; nothing where even that one differs in more than a third of its letters, at least two.
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> known);
 
-/// `, did you mean "roughness"?`, or nothing: to be put behind a message.
+/// `; did you mean "roughness"?`, or nothing: to be put behind a message.
 std::string suggestion(std::string_view word, std::span<const std::string> known);
 
 }  // namespace spectrace
