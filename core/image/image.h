@@ -2,6 +2,7 @@
 // Images in memory, in and out: EXR (OpenEXR), everything else (OpenImageIO).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -40,18 +41,27 @@ struct Image {
   [[nodiscard]] std::vector<std::string> rgb_layers() const;
 };
 
+/// The channels of an RGB layer: "diffuse" -> diffuse.R, diffuse.G, diffuse.B.
+[[nodiscard]] std::array<std::string, 3> rgb_channels(std::string_view layer);
+
 /// Header attributes: what went in, what the numbers mean.
 using Metadata = std::map<std::string, std::variant<std::string, double, std::int64_t>>;
 
-/// Float32, ZIP; written aside and renamed. Non-finite values are written as they are.
+/// Float32, ZIP; written aside and renamed. Non-finite values are written as they are. EXR has no 64-bit
+/// integers: one that does not fit 32 bits is written as text.
 void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata);
 /// 8-bit sRGB of one RGB layer ("" = beauty), scaled by `exposure` and clipped to [0, 1]; non-finite pixels
 /// are painted magenta, so that they are seen.
-void write_png(const std::filesystem::path& file, const Image& image, std::string_view layer = "", double exposure = 1);
+void write_png(const std::filesystem::path& file, const Image& image, std::string_view layer = "",
+               double exposure = 1);
 
-/// EXR (first part), HDR, PNG, ... ; 8-bit files are decoded to linear. Throws InputError, also for images
-/// over `max_pixels`.
+/// EXR (its first part, the data window), told by content; else what OpenImageIO reads by name: HDR, PNG,
+/// JPEG,
+/// ... Integer pixels are decoded from sRGB to linear unless the file says that they are linear; grey becomes
+/// R, G, B. Channels come layer by layer, within each R, G, B, A or X, Y, Z, then by name. Throws InputError
+/// where the file is damaged, not an image, or has more than `max_pixels`; the memory used before is bounded.
 Image read_image(const std::filesystem::path& file, std::size_t max_pixels = std::size_t(1) << 28);
+/// Header attributes that are texts or numbers; without those that describe the pixels' layout.
 Metadata read_metadata(const std::filesystem::path& file);
 
 }  // namespace spectrace

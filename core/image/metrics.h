@@ -6,9 +6,13 @@
 
 namespace spectrace {
 
+/// Width of SSIM's Gaussian window; also the smallest image that has an SSIM.
+inline constexpr int kSsimWindow = 11;
+
 /// Constants of the metrics; every report prints them, since values differ between tools for them.
 struct MetricOptions {
-  double data_range = 0;     ///< peak of PSNR and L of SSIM; 0 = the reference's maximum value
+  double data_range = 0;     ///< peak of PSNR and L of SSIM; 0 = the reference's maximum value (1 where
+                             ///< that is not positive)
   double epsilon = 1e-2;     ///< of relMSE: mean((t-r)² / (r² + epsilon))
   double mape_floor = 1e-2;  ///< of MAPE: mean(|t-r| / (|r| + floor)), as a fraction
 };

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// EXR from memory: behind read_image() and read_metadata(). Internal to core/image.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "core/image/image.h"
+
+namespace spectrace {
+
+[[nodiscard]] bool is_exr(std::span<const std::byte> bytes);
+/// Both throw InputError naming `file`.
+[[nodiscard]] Image decode_exr(std::span<const std::byte> bytes, const std::string& file,
+                               std::size_t max_pixels);
+[[nodiscard]] Metadata decode_exr_metadata(std::span<const std::byte> bytes, const std::string& file);
+
+}  // namespace spectrace
