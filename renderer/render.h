@@ -13,16 +13,20 @@
 namespace spectrace {
 
 struct RenderOptions {
-  int spp = 64;            ///< samples a pixel, at least 1
+  int spp = 64;  ///< samples a pixel, at least 1
   std::uint64_t seed = 0;
-  int threads = 0;         ///< 0 = all cores; changes no bit of the image
+  int threads = 0;     ///< 0 = all cores; changes no bit of the image
+  bool layers = true;  ///< diffuse, specular, emission and background apart; off: R,G,B alone, the same bits
+  std::string kernel;  ///< name of a profile to use instead of the leanest that covers the scene; for tests:
+                       ///< changes no bit of the image. One that does not cover it: InternalError
 };
 
 /// What was simulated and what it cost.
 struct RenderReport {
-  std::string kernel;                       ///< name of the chosen profile
-  std::vector<std::string> effects_used, effects_skipped;  ///< "environment", "dispersion: no dispersive material"
-  std::uint64_t paths = 0, invalid_samples = 0;            ///< non-finite or negative radiance: dropped
+  std::string kernel;  ///< name of the chosen profile
+  std::vector<std::string> effects_used,
+      effects_skipped;                           ///< "environment", "dispersion: no dispersive material"
+  std::uint64_t paths = 0, invalid_samples = 0;  ///< non-finite or negative radiance: dropped
   double seconds = 0;
   int threads = 0;
 };

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/environment.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/math.h"
+#include "core/spectra/color.h"
+
+namespace spectrace {
+
+namespace {
+
+/// Index of the cell of `cumulative` (n + 1 entries from 0 to 1) that holds u, never an empty one.
+int find_cell(const float* cumulative, int n, Float u) {
+  const auto* above = std::upper_bound(cumulative, cumulative + n + 1, float(u));
+  int cell = std::clamp(int(above - cumulative) - 1, 0, n - 1);
+  while (cell > 0 && cumulative[cell + 1] <= cumulative[cell]) {
+    --cell;  // u = 1 lands behind trailing empty cells
+  }
+  return cell;
+}
+
+void accumulate(const double* weights, std::size_t n, float* cumulative) {
+  double total = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    total += weights[i];
+  }
+  double sum = 0;
+  cumulative[0] = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum += total > 0 ? weights[i] / total : 1.0 / double(n);
+    cumulative[i + 1] = float(std::min(sum, 1.0));
+  }
+  cumulative[n] = 1;
+}
+
+}  // namespace
+
+GridDensity::GridDensity(int width, int height, const std::vector<double>& weights)
+    : width_(width),
+      height_(height),
+      rows_(std::size_t(height) + 1),
+      cells_(std::size_t(height) * (width + 1)) {
+  SPECTRACE_CHECK(width > 0 && height > 0 && weights.size() == std::size_t(width) * height);
+  std::vector<double> row_sums(height);
+  for (int y = 0; y < height; ++y) {
+    const double* row = &weights[std::size_t(y) * width];
+    for (int x = 0; x < width; ++x) {
+      SPECTRACE_CHECK(row[x] >= 0 && std::isfinite(row[x]));
+      row_sums[y] += row[x];
+    }
+    accumulate(row, width, &cells_[std::size_t(y) * (width + 1)]);
+  }
+  accumulate(row_sums.data(), height, rows_.data());
+}
+
+GridDensity::Sample GridDensity::sample(Vec2 u) const {
+  const int y = find_cell(rows_.data(), height_, u.y);
+  const float* row = &cells_[std::size_t(y) * (width_ + 1)];
+  const int x = find_cell(row, width_, u.x);
+  const Float row_share = rows_[y + 1] - rows_[y], cell_share = row[x + 1] - row[x];
+  const Float fy = std::clamp((u.y - rows_[y]) / row_share, Float(0), kOneMinusEpsilon);
+  const Float fx = std::clamp((u.x - row[x]) / cell_share, Float(0), kOneMinusEpsilon);
+  return {{(Float(x) + fx) / Float(width_), (Float(y) + fy) / Float(height_)},
+          row_share * cell_share * Float(width_) * Float(height_)};
+}
+
+Float GridDensity::pdf(Vec2 position) const {
+  const int x = std::clamp(int(position.x * Float(width_)), 0, width_ - 1);
+  const int y = std::clamp(int(position.y * Float(height_)), 0, height_ - 1);
+  const float* row = &cells_[std::size_t(y) * (width_ + 1)];
+  return Float(rows_[y + 1] - rows_[y]) * Float(row[x + 1] - row[x]) * Float(width_) * Float(height_);
+}
+
+namespace {
+
+/// D65 as uplifted emission carries it: S(0) = 1/2 at every wavelength, scale 2.
+Float white_at(Float lambda_nm) {
+  return RgbIlluminantSpectrum{SigmoidSpectrum{.c = {0, 0, 0}, .scale = 2}}.at(lambda_nm);
+}
+
+Vec2 image_position(Vec3 local) {
+  return {Float(0.5) - std::atan2(local.y, local.x) * (kInvPi / 2), safe_acos(local.z) * kInvPi};
+}
+
+/// The share of each texel in the bilinear image, times the texel's part of the sphere.
+std::vector<double> texel_weights(const std::vector<double>& luminance, int width, int height) {
+  std::vector<double> weights(luminance.size());
+  for (int y = 0; y < height; ++y) {
+    const double sin_theta = std::sin(double(kPi) * (y + 0.5) / height);
+    for (int x = 0; x < width; ++x) {
+      double sum = 0;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          // ∫ over one texel of the tent functions of the texels around: 1/8, 6/8, 1/8 each way.
+          const double weight = (dx == 0 ? 0.75 : 0.125) * (dy == 0 ? 0.75 : 0.125);
+          const int row = std::clamp(y + dy, 0, height - 1), column = (x + dx + width) % width;
+          sum += weight * luminance[std::size_t(row) * width + column];
+        }
+      }
+      weights[std::size_t(y) * width + x] = sum * sin_theta;
+    }
+  }
+  return weights;
+}
+
+}  // namespace
+
+Environment::Environment(Spectrum radiance) : radiance_(std::move(radiance)) {}
+
+Environment::Environment(const Image& image, const std::filesystem::path& file, Spectrum radiance,
+                         const Transform& to_world)
+    : radiance_(std::move(radiance)), width_(image.width), height_(image.height) {
+  const std::vector<std::string> rgb_names{"R", "G", "B"};
+  const Image rgb = image.select(rgb_names, file.string());
+  if (width_ < 1 || height_ < 1) {
+    throw InputError(file.string(), "", "is an empty image");
+  }
+  axes_ = {normalize(to_world.vector({1, 0, 0})), normalize(to_world.vector({0, 1, 0})),
+           normalize(to_world.vector({0, 0, 1}))};
+  texels_.reserve(std::size_t(width_) * height_);
+  std::vector<double> luminance;
+  luminance.reserve(texels_.capacity());
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      const Rgb value{rgb.at(x, y, 0), rgb.at(x, y, 1), rgb.at(x, y, 2)};
+      for (double channel : value) {
+        if (!std::isfinite(channel) || channel < 0) {
+          throw InputError(file.string(), fmt::format("pixel ({}, {})", x, y),
+                           fmt::format("radiance must be finite and not negative, got {}", channel));
+        }
+      }
+      texels_.push_back(uplift_emission_fast(value).sigmoid);
+      luminance.push_back(rgb_to_xyz(value)[1]);
+    }
+  }
+  const std::vector<double> weights = texel_weights(luminance, width_, height_);
+  double sum = 0, norm = 0;
+  for (int y = 0; y < height_; ++y) {
+    norm += width_ * std::sin(double(kPi) * (y + 0.5) / height_);
+    for (int x = 0; x < width_; ++x) {
+      sum += weights[std::size_t(y) * width_ + x];
+    }
+  }
+  mean_luminance_ = sum / norm;
+  density_ = GridDensity(width_, height_, weights);
+}
+
+SampledSpectrum Environment::radiance(Vec3 direction, const SampledWavelengths& lambda) const {
+  SampledSpectrum result = radiance_.sample(lambda);
+  if (!is_image()) {
+    return result;
+  }
+  const Vec2 position = image_position(axes_.to_local(direction));
+  const Float px = position.x * Float(width_) - Float(0.5), py = position.y * Float(height_) - Float(0.5);
+  const int x0 = int(std::floor(px)), y0 = int(std::floor(py));
+  const Float fx = px - Float(x0), fy = py - Float(y0);
+  const int xa = (x0 + width_) % width_, xb = (x0 + 1 + width_) % width_;
+  const int ya = std::clamp(y0, 0, height_ - 1), yb = std::clamp(y0 + 1, 0, height_ - 1);
+  const SigmoidSpectrum& t00 = texel(xa, ya);
+  const SigmoidSpectrum& t10 = texel(xb, ya);
+  const SigmoidSpectrum& t01 = texel(xa, yb);
+  const SigmoidSpectrum& t11 = texel(xb, yb);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Float nm = lambda.lambda_nm(lane);
+    const Float sigmoid = lerp(lerp(t00.at(nm), t10.at(nm), fx), lerp(t01.at(nm), t11.at(nm), fx), fy);
+    result[lane] *= sigmoid * white_at(nm);
+  }
+  return result;
+}
+
+std::optional<Environment::Sample> Environment::sample(Vec2 u) const {
+  if (!is_image()) {
+    const Float z = 1 - 2 * u.x, r = safe_sqrt(4 * u.x * (1 - u.x)), phi = 2 * kPi * u.y;
+    return Sample{{r * std::cos(phi), r * std::sin(phi), z}, kInvPi / 4};
+  }
+  const GridDensity::Sample s = density_.sample(u);
+  const Float theta = s.position.y * kPi, phi = (Float(0.5) - s.position.x) * (2 * kPi);
+  const Float sin_theta = std::sin(theta);
+  // dω = 2π² sinθ du dv.
+  const Float pdf = s.pdf / (2 * kPi * kPi * sin_theta);
+  if (!(sin_theta > 0) || !(pdf > 0) || !std::isfinite(pdf)) {
+    return std::nullopt;
+  }
+  return Sample{axes_.to_world({sin_theta * std::cos(phi), sin_theta * std::sin(phi), std::cos(theta)}), pdf};
+}
+
+Float Environment::pdf(Vec3 direction) const {
+  if (!is_image()) {
+    return kInvPi / 4;
+  }
+  const Vec3 local = axes_.to_local(direction);
+  const Float sin_theta = std::sqrt(sqr(local.x) + sqr(local.y));
+  const Float pdf = density_.pdf(image_position(local)) / (2 * kPi * kPi * sin_theta);
+  return sin_theta > 0 && std::isfinite(pdf) ? pdf : 0;
+}
+
+Float Environment::mean_radiance(Float lambda_nm) const {
+  return radiance_.at(lambda_nm) * Float(mean_luminance_) * (is_image() ? white_at(lambda_nm) : 1);
+}
+
+}  // namespace spectrace

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/features.h"
+
+#include <fmt/core.h>
+
+#include <variant>
+
+namespace spectrace {
+
+namespace {
+
+bool is_textured(const Material& material) {
+  if (const auto* lambert = std::get_if<Lambert>(&material)) {
+    return lambert->reflectance.is_textured();
+  }
+  const auto* glossy = std::get_if<Glossy>(&material);
+  return glossy != nullptr && glossy->reflectance.is_textured();
+}
+
+bool is_dispersive(const Material& material) {
+  const auto* glass = std::get_if<Dielectric>(&material);
+  return glass != nullptr && !glass->eta.is_constant();
+}
+
+}  // namespace
+
+Features required_features(const Scene& scene, bool layers) {
+  Features f{.indirect = scene.integrator.max_depth > 1,
+             .area_lights = scene.lights.area_count() > 0,
+             .delta_lights = scene.lights.delta_count() > 0,
+             .environment = scene.lights.environment().has_value(),
+             .instances = !scene.geometry.instances.empty(),
+             .lobe_layers = layers};
+  for (const Shape& shape : scene.geometry.shapes) {
+    const Material& material = scene.materials[shape.material];
+    f.delta_lobes |= is_delta(material);
+    f.transmission |= is_transmissive(material);
+    f.dispersion |= is_dispersive(material);
+    f.textures |= is_textured(material);
+  }
+  return f;
+}
+
+EffectList list_effects(const Features& needed, const Features& kernel) {
+  EffectList list;
+  for (const FeatureInfo& info : kFeatureInfos) {
+    if (needed.*info.flag) {
+      list.used.emplace_back(info.name);
+    } else {
+      list.skipped.push_back(
+          fmt::format("{}: {}{}", info.name, info.missing,
+                      kernel.*info.flag ? " (the kernel checks for it all the same)" : ""));
+    }
+  }
+  return list;
+}
+
+}  // namespace spectrace

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The effects a kernel simulates: a template argument, so that what a scene does not need costs nothing (ADR
+// 0006).
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/scene.h"
+
+namespace spectrace {
+
+/// One flag an effect. A kernel may leave out what a scene does not have; that changes no bit of its image.
+struct Features {
+  bool indirect = false;  ///< more than one bounce
+  bool area_lights = false;
+  bool delta_lights = false;  ///< point and directional
+  bool environment = false;
+  bool delta_lobes = false;  ///< mirrors and smooth glass
+  bool transmission = false;
+  bool dispersion = false;
+  bool textures = false;
+  bool instances = false;
+  bool lobe_layers = false;  ///< diffuse, specular, emission, background apart
+
+  friend constexpr bool operator==(const Features&, const Features&) = default;
+};
+
+/// For lists and messages: flag, name, and what a scene lacks that leaves it out.
+struct FeatureInfo {
+  bool Features::*flag;
+  std::string_view name;
+  std::string_view missing;
+};
+inline constexpr std::array<FeatureInfo, 10> kFeatureInfos{{
+    {&Features::indirect, "indirect light", "max_depth is at most 1"},
+    {&Features::area_lights, "area lights", "no shape emits"},
+    {&Features::delta_lights, "point and directional lights", "none in the scene"},
+    {&Features::environment, "environment", "none in the scene"},
+    {&Features::delta_lobes, "mirrors and smooth glass", "no such material"},
+    {&Features::transmission, "transmission", "no transmitting material"},
+    {&Features::dispersion, "dispersion", "no material's refraction varies with wavelength"},
+    {&Features::textures, "textures", "no material varies over its surface"},
+    {&Features::instances, "instances", "none in the scene"},
+    {&Features::lobe_layers, "layers by lobe", "not asked for"},
+}};
+
+/// Everything on.
+constexpr Features all_features() {
+  Features f;
+  for (const FeatureInfo& info : kFeatureInfos) {
+    f.*info.flag = true;
+  }
+  return f;
+}
+
+/// Has `kernel` every flag that `needed` has?
+constexpr bool covers(const Features& kernel, const Features& needed) {
+  for (const FeatureInfo& info : kFeatureInfos) {
+    if (needed.*info.flag && !(kernel.*info.flag)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// What this scene calls for. `layers`: the user wants them apart.
+[[nodiscard]] Features required_features(const Scene& scene, bool layers);
+
+/// "environment" ...; "dispersion: no material's refraction varies with wavelength" ...
+struct EffectList {
+  std::vector<std::string> used, skipped;
+};
+/// `needed` are used. Of the others, those that `kernel` carries all the same are not called skipped for
+/// free: "instances: none in the scene (simulated all the same)".
+[[nodiscard]] EffectList list_effects(const Features& needed, const Features& kernel);
+
+}  // namespace spectrace

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/film.h"
+
+#include <cmath>
+
+namespace spectrace {
+
+LaneToXyz::LaneToXyz(const SampledWavelengths& lambda) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double pdf = lambda.pdf_per_nm(lane);
+    counts_[lane] = pdf > 0;
+    if (!counts_[lane]) {
+      continue;
+    }
+    const Xyz bar = cie_xyz_bar(lambda.lambda_nm(lane));
+    const double scale = 1 / (pdf * kLanes * cie_y_integral());
+    weight_[lane] = {bar[0] * scale, bar[1] * scale, bar[2] * scale};
+  }
+}
+
+bool LaneToXyz::add(const LaneSums& sums, Xyz& xyz) const {
+  bool valid = true;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!counts_[lane]) {
+      continue;
+    }
+    valid &= std::isfinite(sums.v[lane]) && sums.v[lane] >= 0;
+    for (int c = 0; c < 3; ++c) {
+      xyz[c] += weight_[lane][c] * sums.v[lane];
+    }
+  }
+  return valid;
+}
+
+Film::Film(int width, int height) : width_(width), height_(height), pixels_(std::size_t(width) * height) {}
+
+void Film::add(int x, int y, const PathValue& value) {
+  Pixel& pixel = pixels_[std::size_t(y) * width_ + x];
+  if (!value.valid) {
+    ++pixel.invalid;
+    return;
+  }
+  ++pixel.valid;
+  for (int layer = 0; layer < kLayerCount; ++layer) {
+    for (int c = 0; c < 3; ++c) {
+      pixel.sum[layer][c] += value.xyz[layer][c];
+    }
+  }
+}
+
+Image Film::resolve(bool layers) const {
+  std::vector<std::string> names{"R", "G", "B"};
+  if (layers) {
+    for (const char* layer : {"diffuse", "specular", "emission", "background"}) {  // in the order of Layer
+      for (const char* channel : {".R", ".G", ".B"}) {
+        names.push_back(std::string(layer) + channel);
+      }
+    }
+  }
+  names.emplace_back("diagnostics.invalid");
+  Image image(width_, height_, std::move(names));
+  float* out = image.data.data();
+  for (const Pixel& pixel : pixels_) {
+    const double scale = pixel.valid > 0 ? 1 / double(pixel.valid) : 0;
+    for (int layer = 0; layer < (layers ? kLayerCount : 1); ++layer) {
+      const Xyz& sum = pixel.sum[layer];
+      for (double channel : xyz_to_rgb({sum[0] * scale, sum[1] * scale, sum[2] * scale})) {
+        *out++ = float(channel);
+      }
+    }
+    *out++ = float(pixel.invalid);
+  }
+  return image;
+}
+
+std::uint64_t Film::invalid_samples() const {
+  std::uint64_t total = 0;
+  for (const Pixel& pixel : pixels_) {
+    total += pixel.invalid;
+  }
+  return total;
+}
+
+}  // namespace spectrace

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/geometry.h"
+
+#include <type_traits>
+
+namespace spectrace {
+
+namespace {
+
+struct DoubleVec {
+  double x, y, z;
+};
+DoubleVec wide(Vec3 v) { return {v.x, v.y, v.z}; }
+double dot(DoubleVec a, DoubleVec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+}  // namespace
+
+void Box::add(Vec3 p) {
+  min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+  max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+}
+
+Box bounds(const Shape& shape) {
+  Box box;
+  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+    const Vec3 r{sphere->radius, sphere->radius, sphere->radius};
+    box.add(sphere->center - r);
+    box.add(sphere->center + r);
+  } else if (const auto* quad = std::get_if<Quad>(&shape.geometry)) {
+    box.add(quad->corner);
+    box.add(quad->corner + quad->edge_u);
+    box.add(quad->corner + quad->edge_v);
+    box.add(quad->corner + quad->edge_u + quad->edge_v);
+  } else {
+    for (Vec3 p : std::get<TriangleMesh>(shape.geometry).positions) {
+      box.add(p);
+    }
+  }
+  return box;
+}
+
+Box bounds(const Geometry& geometry) {
+  const auto range_bounds = [&](ShapeRange range) {
+    Box box;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+      const Box b = bounds(geometry.shapes[i]);
+      if (!b.empty()) {
+        box.add(b.min);
+        box.add(b.max);
+      }
+    }
+    return box;
+  };
+  Box world = range_bounds(geometry.top);
+  for (const Instance& instance : geometry.instances) {
+    const Box local = range_bounds(geometry.groups[instance.group]);
+    if (local.empty()) {
+      continue;
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      world.add(instance.to_world.point({(corner & 1) != 0 ? local.max.x : local.min.x,
+                                         (corner & 2) != 0 ? local.max.y : local.min.y,
+                                         (corner & 4) != 0 ? local.max.z : local.min.z}));
+    }
+  }
+  return world;
+}
+
+std::optional<SphereCrossings> intersect_sphere(const Sphere& sphere, const Ray& ray) {
+  const DoubleVec d = wide(ray.direction);
+  const DoubleVec o = wide(ray.origin), center = wide(sphere.center);
+  const DoubleVec to_center{center.x - o.x, center.y - o.y, center.z - o.z};
+  const double dd = dot(d, d);
+  const double t_closest = dot(to_center, d) / dd;
+  const DoubleVec perpendicular{to_center.x - t_closest * d.x, to_center.y - t_closest * d.y,
+                                to_center.z - t_closest * d.z};
+  const double radius = sphere.radius;
+  const double h2 = radius * radius - dot(perpendicular, perpendicular);
+  if (!(h2 >= 0)) {
+    return std::nullopt;
+  }
+  const double half = std::sqrt(h2 / dd);
+  return SphereCrossings{t_closest - half, t_closest + half};
+}
+
+bool is_mirroring(const Transform& transform) {
+  const auto& m = transform.m;
+  return double(m[0][0]) * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
+             double(m[0][1]) * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
+             double(m[0][2]) * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]) <
+         0;
+}
+
+std::optional<Transform> inverse(const Transform& transform) {
+  const auto& m = transform.m;
+  const auto minor2 = [&](int r0, int r1, int c0, int c1) {
+    return double(m[r0][c0]) * m[r1][c1] - double(m[r0][c1]) * m[r1][c0];
+  };
+  const double c00 = minor2(1, 2, 1, 2), c01 = -minor2(1, 2, 0, 2), c02 = minor2(1, 2, 0, 1);
+  const double determinant = m[0][0] * c00 + m[0][1] * c01 + m[0][2] * c02;
+  const double cofactor[3][3] = {{c00, c01, c02},
+                                 {-minor2(0, 2, 1, 2), minor2(0, 2, 0, 2), -minor2(0, 2, 0, 1)},
+                                 {minor2(0, 1, 1, 2), -minor2(0, 1, 0, 2), minor2(0, 1, 0, 1)}};
+  if (determinant == 0 || !std::isfinite(1 / determinant)) {
+    return std::nullopt;
+  }
+  Transform inverted;
+  for (int r = 0; r < 3; ++r) {
+    double offset = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double entry = cofactor[c][r] / determinant;
+      inverted.m[r][c] = Float(entry);
+      offset -= entry * m[c][3];
+    }
+    inverted.m[r][3] = Float(offset);
+    for (Float entry : inverted.m[r]) {
+      if (!std::isfinite(entry)) {
+        return std::nullopt;
+      }
+    }
+  }
+  return inverted;
+}
+
+}  // namespace spectrace

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/lights.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/math/math.h"
+
+namespace spectrace {
+
+namespace {
+
+constexpr double kPiDouble = 3.14159265358979323846;
+
+/// Mean over wavelengths as paths draw them.
+double mean_over(const WavelengthDistribution& wavelengths, const std::function<Float(Float)>& at) {
+  constexpr int kSteps = 64;  // by quantiles: ample for a choice that need not be exact
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    sum += at(wavelengths.sample((Float(i) + Float(0.5)) / kSteps).lambda_nm(0));
+  }
+  return sum / kSteps;
+}
+
+double mean_of(const WavelengthDistribution& wavelengths, const Spectrum& spectrum) {
+  return mean_over(wavelengths, [&](Float nm) { return spectrum.at(nm); });
+}
+
+/// One thing that lights: some consecutive lights and their powers.
+struct Emitter {
+  std::vector<double> powers;
+  [[nodiscard]] double total() const { return std::accumulate(powers.begin(), powers.end(), 0.0); }
+};
+
+/// Probability of each light, see Lights::choose().
+std::vector<double> choice_probabilities(const std::vector<Emitter>& emitters) {
+  const auto lights = [](const Emitter& e) { return e.total() > 0; };
+  const double count = double(std::count_if(emitters.begin(), emitters.end(), lights));
+  double all = 0, largest = 0;
+  for (const Emitter& e : emitters) {
+    largest = std::max(largest, e.total());
+  }
+  for (const Emitter& e : emitters) {
+    all += largest > 0 ? e.total() / largest : 0;  // relative, so that powers of 1e300 cannot overflow
+  }
+  std::vector<double> result;
+  for (const Emitter& e : emitters) {
+    const double total = e.total();
+    const double chosen = total > 0 ? 0.5 / count + 0.5 * (total / largest) / all : 0;
+    for (double power : e.powers) {
+      result.push_back(total > 0 ? chosen * (power / total) : 0);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& groups,
+               std::vector<Spectrum> emissions, std::vector<DeltaLight> delta,
+               std::optional<Environment> environment, const WavelengthDistribution& wavelengths,
+               Float scene_radius)
+    : area_(std::move(area)),
+      emissions_(std::move(emissions)),
+      delta_(std::move(delta)),
+      environment_(std::move(environment)) {
+  std::vector<Emitter> emitters;
+  std::size_t next = 0;
+  for (std::uint32_t size : groups) {
+    Emitter emitter;
+    const double radiance = size > 0 ? mean_of(wavelengths, emissions_[area_[next].emission]) : 0;
+    for (std::uint32_t i = 0; i < size; ++i, ++next) {
+      emitter.powers.push_back(kPiDouble * light_area(area_[next].shape) * radiance);
+    }
+    emitters.push_back(std::move(emitter));
+  }
+  SPECTRACE_CHECK(next == area_.size());
+  const double disk = kPiDouble * sqr(double(scene_radius));  // what the scene shows a distant light
+  for (const DeltaLight& light : delta_) {
+    const auto* point = std::get_if<PointLight>(&light);
+    emitters.push_back(
+        {{point != nullptr ? 4 * kPiDouble * mean_of(wavelengths, point->intensity)
+                           : disk * mean_of(wavelengths, std::get<DirectionalLight>(light).irradiance)}});
+  }
+  if (environment_) {
+    const double mean = mean_over(wavelengths, [&](Float nm) { return environment_->mean_radiance(nm); });
+    emitters.push_back(
+        {{4 * kPiDouble * std::max(disk, 1e-30) * mean}});  // 1e-30: an empty scene has no disk
+  }
+  double sum = 0;
+  for (double p : choice_probabilities(emitters)) {
+    probability_.push_back(Float(p));
+    cumulative_.push_back(sum += p);
+  }
+  if (!(sum > 0)) {
+    cumulative_.clear();
+  }
+}
+
+std::optional<Lights::Choice> Lights::choose(Float u) const {
+  if (cumulative_.empty()) {
+    return std::nullopt;
+  }
+  const double target = double(u) * cumulative_.back();
+  const auto above = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
+  const auto index = std::min<std::size_t>(above - cumulative_.begin(), cumulative_.size() - 1);
+  if (!(probability_[index] > 0)) {
+    return std::nullopt;  // a share that Float cannot hold
+  }
+  return Choice{std::uint32_t(index), probability_[index]};
+}
+
+std::optional<LightSample> Lights::sample_area(std::uint32_t light, Vec3 from, Vec2 u,
+                                               const SampledWavelengths& lambda) const {
+  const std::optional<LightPoint> point = sample_light(area_[light].shape, from, u);
+  if (!point) {
+    return std::nullopt;
+  }
+  return LightSample{point->wi, point->position, emission(light, lambda), point->pdf};
+}
+
+std::optional<LightSample> Lights::sample_delta(std::uint32_t light, Vec3 from,
+                                                const SampledWavelengths& lambda) const {
+  const DeltaLight& delta = delta_[light - area_.size()];
+  if (const auto* sun = std::get_if<DirectionalLight>(&delta)) {
+    return LightSample{sun->to_light, std::nullopt, sun->irradiance.sample(lambda), 1};
+  }
+  const auto& point = std::get<PointLight>(delta);
+  const Vec3 way = point.position - from;
+  const Float distance_squared = length_squared(way);
+  if (!(distance_squared > 0)) {
+    return std::nullopt;
+  }
+  return LightSample{way / std::sqrt(distance_squared), point.position,
+                     point.intensity.sample(lambda) / distance_squared, 1};
+}
+
+std::optional<LightSample> Lights::sample_environment(Vec2 u, const SampledWavelengths& lambda) const {
+  const std::optional<Environment::Sample> s = environment_->sample(u);
+  if (!s) {
+    return std::nullopt;
+  }
+  return LightSample{s->wi, std::nullopt, environment_->radiance(s->wi, lambda), s->pdf};
+}
+
+}  // namespace spectrace

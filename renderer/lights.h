@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// All lights of a scene and the choice between them.
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/spectra/spectrum.h"
+#include "renderer/area_light.h"
+#include "renderer/environment.h"
+
+namespace spectrace {
+
+struct PointLight {
+  Vec3 position;
+  Spectrum intensity;  ///< [W·sr⁻¹·nm⁻¹]
+};
+struct DirectionalLight {
+  Vec3 to_light;        ///< unit
+  Spectrum irradiance;  ///< [W·m⁻²·nm⁻¹] on a surface facing it
+};
+using DeltaLight = std::variant<PointLight, DirectionalLight>;
+
+/// Radiance arriving at a point from one light; divide by `pdf`.
+struct LightSample {
+  Vec3 wi;                   ///< unit, towards the light
+  std::optional<Vec3> end;   ///< of the shadow ray; none: infinitely far
+  SampledSpectrum radiance;  ///< delta lights: intensity / distance², irradiance
+  Float pdf = 0;             ///< > 0; [1/sr], or 1 for a delta light. The choice of the light is not in it
+};
+
+/// Immutable. Lights are numbered: area lights first, in order, then delta lights, then the environment.
+class Lights {
+ public:
+  struct AreaLight {
+    LightShape shape;
+    std::uint32_t emission = 0;  ///< into `emissions`
+  };
+
+  Lights() = default;
+  /// `groups`: how many consecutive area lights make one emitter (a mesh). Powers are averaged over
+  /// `wavelengths`; `scene_radius` [m] gives distant lights a power.
+  Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& groups,
+         std::vector<Spectrum> emissions, std::vector<DeltaLight> delta,
+         std::optional<Environment> environment, const WavelengthDistribution& wavelengths,
+         Float scene_radius);
+
+  struct Choice {
+    std::uint32_t light = 0;
+    Float probability = 0;
+  };
+  /// Half of the choice is equal between emitters, so that no light starves; half follows their power. `u` in
+  /// [0, 1). nullopt where there is no light.
+  [[nodiscard]] std::optional<Choice> choose(Float u) const;
+  [[nodiscard]] Float probability(std::uint32_t light) const { return probability_[light]; }
+
+  [[nodiscard]] bool is_area(std::uint32_t light) const { return light < area_.size(); }
+  [[nodiscard]] bool is_environment(std::uint32_t light) const {
+    return environment_ && light == environment_index();
+  }
+  [[nodiscard]] std::optional<LightSample> sample_area(std::uint32_t light, Vec3 from, Vec2 u,
+                                                       const SampledWavelengths& lambda) const;
+  [[nodiscard]] std::optional<LightSample> sample_delta(std::uint32_t light, Vec3 from,
+                                                        const SampledWavelengths& lambda) const;
+  [[nodiscard]] std::optional<LightSample> sample_environment(Vec2 u, const SampledWavelengths& lambda) const;
+
+  [[nodiscard]] SampledSpectrum emission(std::uint32_t area_light, const SampledWavelengths& lambda) const {
+    return emissions_[area_[area_light].emission].sample(lambda);
+  }
+  [[nodiscard]] const LightShape& shape(std::uint32_t area_light) const { return area_[area_light].shape; }
+  [[nodiscard]] const std::optional<Environment>& environment() const { return environment_; }
+  [[nodiscard]] std::uint32_t environment_index() const {
+    return std::uint32_t(area_.size() + delta_.size());
+  }
+
+  [[nodiscard]] std::size_t area_count() const { return area_.size(); }
+  [[nodiscard]] std::size_t delta_count() const { return delta_.size(); }
+
+ private:
+  std::vector<AreaLight> area_;
+  std::vector<Spectrum> emissions_;
+  std::vector<DeltaLight> delta_;
+  std::optional<Environment> environment_;
+  std::vector<Float> probability_;  // by light
+  std::vector<double> cumulative_;  // by light; last 1
+};
+
+}  // namespace spectrace

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+// One path from the camera: next-event estimation and BSDF sampling joined by multiple importance sampling
+// (Veach 1997, ch. 9-10), Russian roulette, hero wavelengths (Wilkie et al. 2014). What a scene does not need
+// is compiled away by `if constexpr`; what remains computes the same bits (ADR 0006).
+#pragma once
+
+#include "core/math/math.h"
+#include "core/math/sampler.h"
+#include "renderer/features.h"
+#include "renderer/film.h"
+#include "renderer/scene.h"
+#include "renderer/surface.h"
+
+namespace spectrace {
+
+/// Shadow rays stop short of the light's surface by 16 steps of float rounding of their length.
+inline constexpr Float kShadowEnd = 1 - 16 * kFloatRounding;
+/// Roulette: survival lies in [1/20, 19/20]. Below, weights of survivors would grow without bound (hard case
+/// H10 above: measured albedos over 1 must still end).
+inline constexpr Float kMinSurvival = Float(0.05), kMaxSurvival = Float(0.95);
+/// Shading normals are bent until the viewer stands this far above their horizon (cosine), or as far as above
+/// the true one: interpolated normals that face away would render black rims (hard case H17).
+inline constexpr Float kMinShadingCosine = Float(1e-3);
+
+template <Features kFeatures>
+class PathTracer {
+ public:
+  PathTracer(const Scene& scene, const Sampler& sampler)
+      : scene_(scene),
+        sampler_(sampler),
+        lambda_(scene.wavelengths.sample(sampler.get1d(PathDimension::kWavelength))) {}
+
+  PathValue trace(const Ray& camera_ray) {
+    Ray ray = camera_ray;
+    for (vertex_ = 0;; ++vertex_) {
+      const std::optional<Intersection> hit = scene_.accel.intersect(ray);
+      if (!hit) {
+        add_background(ray.direction);
+        break;
+      }
+      const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray, *hit);
+      add_emission(point, ray.direction);
+      if (int(vertex_) >= max_depth() || !scatter(point, ray)) {
+        break;
+      }
+    }
+    flush();
+    return value_;
+  }
+
+ private:
+  static constexpr SurfaceQuery kQuery{.instances = kFeatures.instances, .uv = kFeatures.textures};
+
+  [[nodiscard]] int max_depth() const {
+    if constexpr (kFeatures.indirect) return scene_.integrator.max_depth;
+    return std::min(scene_.integrator.max_depth, 1);
+  }
+
+  // ---- What arrives -------------------------------------------------------------------------------------
+
+  /// Weight of light met by BSDF sampling, that light sampling finds with `light_pdf` [1/sr].
+  [[nodiscard]] Float bsdf_mis_weight(Float light_pdf) const {
+    return last_was_delta_ || !scene_.integrator.next_event ? 1 : power_heuristic(last_pdf_, light_pdf);
+  }
+
+  void add_background([[maybe_unused]] Vec3 direction) {
+    if constexpr (kFeatures.environment) {
+      const std::optional<Environment>& environment = scene_.lights.environment();
+      if (!environment) return;
+      Float weight = 1;
+      if (!last_was_delta_) {
+        const Float choice = scene_.lights.probability(scene_.lights.environment_index());
+        weight = bsdf_mis_weight(environment->pdf(direction) * choice);
+      }
+      add(beta_ * environment->radiance(direction, lambda_) * weight, Layer::kBackground);
+    }
+  }
+
+  void add_emission([[maybe_unused]] const SurfacePoint& point, [[maybe_unused]] Vec3 direction) {
+    if constexpr (kFeatures.area_lights) {
+      if (point.light == kNone || !(dot(direction, point.normal_g) < 0)) return;
+      Float weight = 1;
+      if (!last_was_delta_) {
+        const Float pdf = light_pdf(scene_.lights.shape(point.light), last_position_, direction,
+                                    point.position, point.normal_g);
+        weight = bsdf_mis_weight(pdf * scene_.lights.probability(point.light));
+      }
+      add(beta_ * scene_.lights.emission(point.light, lambda_) * weight, Layer::kEmission);
+    }
+  }
+
+  /// Radiance that goes to the first non-delta hit's lobes in its shares; seen without one, to `direct`
+  /// (camera) or to the specular layer (through mirrors and glass).
+  void add(const SampledSpectrum& radiance, Layer direct) {
+    add_to(Layer::kBeauty, radiance);
+    if constexpr (kFeatures.lobe_layers) {
+      if (vertex_ == 0) {
+        add_to(direct, radiance);
+      } else if (!has_share_) {
+        add_to(Layer::kSpecular, radiance);
+      } else {
+        add_split(radiance, diffuse_share_);
+      }
+    }
+  }
+
+  void add_to(Layer layer, const SampledSpectrum& radiance) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      sums_[int(layer)].v[lane] += radiance[lane];
+    }
+  }
+
+  void add_split(const SampledSpectrum& radiance, const SampledSpectrum& diffuse_share) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double diffuse = double(radiance[lane]) * diffuse_share[lane];
+      sums_[int(Layer::kDiffuse)].v[lane] += diffuse;
+      sums_[int(Layer::kSpecular)].v[lane] += double(radiance[lane]) - diffuse;
+    }
+  }
+
+  /// The part of a BSDF value that is diffuse, by lane.
+  static SampledSpectrum diffuse_share(const LobeValues& lobes) {
+    const SampledSpectrum total = lobes.total();
+    SampledSpectrum share;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      // Clamped: rounding of a sum of lobes must not make the other one negative.
+      share[lane] = total[lane] > 0 ? std::clamp(lobes.diffuse[lane] / total[lane], Float(0), Float(1)) : 0;
+    }
+    return share;
+  }
+
+  /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
+  void flush() {
+    const LaneToXyz weights(lambda_);
+    constexpr int kUsed = kFeatures.lobe_layers ? kLayerCount : 1;
+    for (int layer = 0; layer < kUsed; ++layer) {
+      value_.valid &= weights.add(sums_[layer], value_.xyz[layer]);
+      sums_[layer] = {};
+    }
+  }
+
+  // ---- What goes on -------------------------------------------------------------------------------------
+
+  /// A point with the frame its BSDF is evaluated in.
+  struct Vertex {
+    SurfacePoint point;  // normal_g on the frame's side
+    Frame frame;
+    Vec3 wo;  // local
+    const Material& material;
+  };
+
+  [[nodiscard]] Vertex make_vertex(SurfacePoint point, Vec3 wo) const {
+    const Material& material = scene_.materials[point.material];
+    bool flip = dot(wo, point.normal_g) < 0;
+    if constexpr (kFeatures.transmission) flip = flip && !is_transmissive(material);
+    if (flip) {
+      point.normal_g = -point.normal_g;
+      point.normal_s = -point.normal_s;
+    }
+    const Float true_cosine = dot(wo, point.normal_g);
+    const Float side = true_cosine < 0 ? Float(-1) : Float(1);
+    const Float cosine = dot(wo, point.normal_s) * side;
+    const Float wanted = std::min(kMinShadingCosine, true_cosine * side);
+    if (cosine < wanted) {
+      point.normal_s = normalize(point.normal_s + wo * (side * (wanted - cosine)));
+    }
+    const Frame frame = frame_along(point.normal_s, point.tangent);
+    return {point, frame, frame.to_local(wo), material};
+  }
+
+  /// Light may not pass a surface because its shading normal is bent: both normals must agree on the side.
+  static bool sides_agree(const Vertex& vertex, Vec3 wi_world, Vec3 wi_local) {
+    return (dot(wi_world, vertex.point.normal_g) > 0) == (wi_local.z > 0);
+  }
+
+  void sample_lights(const Vertex& vertex) {
+    const std::optional<Lights::Choice> choice =
+        scene_.lights.choose(sampler_.get1d(vertex_, VertexDimension::kLightChoice));
+    if (!choice) return;
+    bool is_delta_light = true;
+    const std::optional<LightSample> light = sample_light_source(vertex, choice->light, is_delta_light);
+    if (!light) return;
+    const Vec3 wi = vertex.frame.to_local(light->wi);
+    if (!sides_agree(vertex, light->wi, wi)) return;
+    const ShadingPoint at{lambda_, vertex.point.uv};
+    const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, at);
+    if (bsdf.value_cos.is_zero() || light->radiance.is_zero()) return;
+    if (is_shadowed(vertex, *light)) return;
+    const Float pdf = light->pdf * choice->probability;
+    if (!(pdf > 0)) return;  // a density Float cannot hold: BSDF sampling carries it alone
+    const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
+    const SampledSpectrum radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
+    add_to(Layer::kBeauty, radiance);
+    if constexpr (kFeatures.lobe_layers) {
+      add_split(radiance, has_share_ ? diffuse_share_
+                                     : diffuse_share(evaluate_lobes(vertex.material, vertex.wo, wi, at)));
+    }
+  }
+
+  [[nodiscard]] std::optional<LightSample> sample_light_source(const Vertex& vertex, std::uint32_t light,
+                                                               bool& is_delta_light) const {
+    [[maybe_unused]] const Vec2 u = sampler_.get2d(vertex_, VertexDimension::kLight);
+    if constexpr (kFeatures.area_lights) {
+      if (scene_.lights.is_area(light)) {
+        is_delta_light = false;
+        return scene_.lights.sample_area(light, vertex.point.position, u, lambda_);
+      }
+    }
+    if constexpr (kFeatures.environment) {
+      if (scene_.lights.is_environment(light)) {
+        is_delta_light = false;
+        return scene_.lights.sample_environment(u, lambda_);
+      }
+    }
+    if constexpr (kFeatures.delta_lights) {
+      return scene_.lights.sample_delta(light, vertex.point.position, lambda_);
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_shadowed(const Vertex& vertex, const LightSample& light) const {
+    const Vec3 origin = ray_origin(vertex.point, light.wi);
+    return scene_.accel.occluded(light.end ? Ray{origin, *light.end - origin, kShadowEnd}
+                                           : Ray{origin, light.wi});
+  }
+
+  /// Next-event estimation and the next ray. False: the path ends.
+  bool scatter(const SurfacePoint& point, Ray& ray) {
+    const Vertex vertex = make_vertex(point, -ray.direction);
+    bool only_delta = false;
+    if constexpr (kFeatures.delta_lobes) only_delta = is_delta(vertex.material);
+    if (!only_delta && scene_.integrator.next_event) sample_lights(vertex);
+
+    const ShadingPoint at{lambda_, vertex.point.uv};
+    const BsdfRandom u{sampler_.get1d(vertex_, VertexDimension::kBsdfLobe),
+                       sampler_.get2d(vertex_, VertexDimension::kBsdf)};
+    const std::optional<BsdfSample> s = sample(vertex.material, vertex.wo, u, at);
+    if (!s || s->weight.is_zero()) return false;
+    const Vec3 wi = vertex.frame.to_world(s->wi);
+    if (!sides_agree(vertex, wi, s->wi)) return false;
+    if constexpr (kFeatures.lobe_layers) {
+      if (!has_share_ && !s->is_delta) {
+        diffuse_share_ = diffuse_share(evaluate_lobes(vertex.material, vertex.wo, s->wi, at));
+        has_share_ = true;
+      }
+    }
+    beta_ *= s->weight;
+    if (!beta_.is_finite() || !is_finite(wi)) {
+      value_.valid = false;
+      return false;
+    }
+    if constexpr (kFeatures.dispersion) {
+      if (s->is_dispersive) terminate_secondary();
+    }
+    last_was_delta_ = s->is_delta;
+    last_pdf_ = s->pdf;
+    last_position_ = vertex.point.position;
+    ray = {ray_origin(vertex.point, wi), wi};
+    return survives();
+  }
+
+  /// From here the path knows its hero only. What the other lanes have gathered before was theirs to gather:
+  /// it is kept (throwing it away is unbiased as well, but coloured noise).
+  void terminate_secondary() {
+    if (lambda_.secondary_terminated()) return;
+    flush();
+    lambda_.terminate_secondary();
+    for (int lane = 1; lane < kLanes; ++lane) {
+      beta_[lane] = 0;
+    }
+  }
+
+  /// Unbiased: what survives is divided by its probability. The last ray only fetches light: not worth a
+  /// game, and so a kernel without indirect light need not know of any.
+  bool survives() {
+    if constexpr (kFeatures.indirect) {
+      const int next = int(vertex_) + 1;
+      if (next >= scene_.integrator.roulette_depth && next < scene_.integrator.max_depth) {
+        const Float survival = std::clamp(beta_.max(), kMinSurvival, kMaxSurvival);
+        if (!(sampler_.get1d(vertex_, VertexDimension::kRoulette) < survival)) return false;
+        beta_ *= 1 / survival;
+      }
+    }
+    return true;
+  }
+
+  const Scene& scene_;
+  const Sampler& sampler_;
+  SampledWavelengths lambda_;
+  std::uint32_t vertex_ = 0;
+  SampledSpectrum beta_{1};
+  std::array<LaneSums, kLayerCount> sums_{};
+  PathValue value_;
+  bool has_share_ = false;         // a non-delta hit has split the path into lobes
+  SampledSpectrum diffuse_share_;  // of everything that arrives from behind that hit
+  bool last_was_delta_ = true;     // the camera counts as one: no light sample competes
+  Float last_pdf_ = 0;
+  Vec3 last_position_;
+};
+
+}  // namespace spectrace

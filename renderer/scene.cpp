@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene.h"
+
+#include <fmt/core.h>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "renderer/scene_shapes.h"
+
+namespace spectrace {
+
+namespace {
+
+void check_camera(const SceneDesc& scene) {
+  const CameraDesc& c = scene.camera;
+  const auto fail = [&](const char* key, const char* problem) {
+    throw InputError(scene.file_name, fmt::format("/camera/{}", key), problem);
+  };
+  const Vec3 view = c.target - c.origin;
+  if (!(length_squared(view) > 0) || !is_finite(view)) {
+    fail("target", "must differ from the camera's origin");
+  }
+  if (!(length_squared(cross(normalize(view), c.up)) > 0) || !is_finite(c.up)) {
+    fail("up", "must not be zero or lie along the view");
+  }
+  if (!(c.fov_deg > 0 && c.fov_deg < 180)) {
+    fail("fov", "must lie in (0, 180) degrees");
+  }
+  if (scene.film.width < 1 || scene.film.height < 1) {
+    throw InputError(scene.file_name, "/film", "needs at least one pixel");
+  }
+}
+
+std::string digest_of(const MaterialDesc& material) {
+  const std::filesystem::path* file = nullptr;
+  if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
+    file = &measured->file;
+  } else if (const auto* separated = std::get_if<SeparatedDesc>(&material.kind)) {
+    file = &separated->file;
+  }
+  return file == nullptr ? "" : fmt::format("{}: {}", material.name, sha256_hex(read_file(*file)));
+}
+
+Environment build_environment(const EnvironmentDesc& light) {
+  const Spectrum radiance = light.radiance.scaled(light.scale);
+  return light.file.empty() ? Environment(radiance)
+                            : Environment(read_image(light.file), light.file, radiance, light.to_world);
+}
+
+struct DistantLights {
+  std::vector<DeltaLight> delta;
+  std::optional<Environment> environment;
+};
+
+DistantLights build_lights(const SceneDesc& scene) {
+  DistantLights result;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const auto fail = [&](const char* problem) {
+      throw InputError(scene.file_name, fmt::format("/lights/{}", i), problem);
+    };
+    const LightDesc& light = scene.lights[i];
+    if (const auto* point = std::get_if<PointLightDesc>(&light)) {
+      result.delta.emplace_back(PointLight{point->position, point->intensity});
+    } else if (const auto* sun = std::get_if<DirectionalLightDesc>(&light)) {
+      if (!(length_squared(sun->direction) > 0)) {
+        fail("the direction of a directional light must not be zero");
+      }
+      result.delta.emplace_back(DirectionalLight{-normalize(sun->direction), sun->irradiance});
+    } else if (result.environment) {
+      fail("a scene has at most one environment");
+    } else {
+      result.environment = build_environment(std::get<EnvironmentDesc>(light));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Scene build_scene(const SceneDesc& description, Progress& progress) {
+  check_camera(description);
+  std::vector<Material> materials;
+  std::vector<std::string> digests;
+  for (const MaterialDesc& material : description.materials) {
+    materials.push_back(build_material(material));
+    if (std::string digest = digest_of(material); !digest.empty()) {
+      digests.push_back(std::move(digest));
+    }
+  }
+  ShapeBuilder shapes(description, progress);
+  shapes.build();
+  const WavelengthDistribution wavelengths = description.visible_sampling
+                                                 ? WavelengthDistribution::visible(description.range)
+                                                 : WavelengthDistribution::uniform(description.range);
+  DistantLights distant = build_lights(description);
+  Accel accel(shapes.geometry);
+  const Float radius = bounds(shapes.geometry).radius();
+  return Scene{
+      .file_name = description.file_name,
+      .sha256 = description.sha256,
+      .material_sha256s = std::move(digests),
+      .wavelengths = wavelengths,
+      .camera = Camera(description.camera, description.film),
+      .film = description.film,
+      .integrator = description.integrator,
+      .spp = description.spp,
+      .seed = description.seed,
+      .materials = std::move(materials),
+      .geometry = std::move(shapes.geometry),
+      .lights = Lights(std::move(shapes.area_lights), shapes.light_groups, std::move(shapes.emissions),
+                       std::move(distant.delta), std::move(distant.environment), wavelengths, radius),
+      .accel = std::move(accel)};
+}
+
+}  // namespace spectrace

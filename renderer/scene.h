@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene ready to be rendered: everything loaded, placed, checked; immutable.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "materials/material.h"
+#include "renderer/accel_embree.h"
+#include "renderer/camera.h"
+#include "renderer/geometry.h"
+#include "renderer/lights.h"
+#include "renderer/scene_desc.h"
+
+namespace spectrace {
+
+/// Never changed after build_scene(); shared between threads.
+struct Scene {
+  std::string file_name;
+  std::string sha256;                         ///< of the JSON text
+  std::vector<std::string> material_sha256s;  ///< "name: digest" of each material file read
+  WavelengthDistribution wavelengths;
+  Camera camera;
+  FilmDesc film;
+  IntegratorDesc integrator;
+  int spp = 64;            ///< what the file asks for
+  std::uint64_t seed = 0;  ///< likewise
+  std::vector<Material> materials;
+  Geometry geometry;
+  Lights lights;
+  Accel accel;
+};
+
+/// Loads meshes, images and measured files, drops what cannot be hit (noted by name) and builds the
+/// acceleration structure. Throws InputError naming the JSON place.
+[[nodiscard]] Scene build_scene(const SceneDesc& description, Progress& progress);
+
+}  // namespace spectrace
