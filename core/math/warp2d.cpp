@@ -173,11 +173,10 @@ Float Warp2D::value(const Blend& b, Vec2 position) const {
   return lerp(value(b, row, column.index), value(b, row, column.index + 1), column.fraction);
 }
 
-Float Warp2D::eval(Vec2 position, WarpParams params) const { return value(blend(params), position); }
+Float Warp2D::eval(Vec2 position, const Blend& b) const { return value(b, position); }
 
-Warp2D::Sample Warp2D::sample(Vec2 u, WarpParams params) const {
+Warp2D::Sample Warp2D::sample(Vec2 u, const Blend& b) const {
   SPECTRACE_DCHECK(!marginal_.empty());
-  const Blend b = blend(params);
 
   const Float mass = target_mass(u.y, marginal(b, height_ - 1));
   Cell row{find_cell(height_ - 1, mass, [&](int y) { return marginal(b, y); }), 0};
@@ -195,9 +194,8 @@ Warp2D::Sample Warp2D::sample(Vec2 u, WarpParams params) const {
   return {position, value(b, position)};
 }
 
-Warp2D::Sample Warp2D::invert(Vec2 position, WarpParams params) const {
+Warp2D::Sample Warp2D::invert(Vec2 position, const Blend& b) const {
   SPECTRACE_DCHECK(!marginal_.empty());
-  const Blend b = blend(params);
   const Cell row = cell_at(position.y, height_);
   const Cell column = cell_at(position.x, width_);
 

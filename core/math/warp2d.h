@@ -27,22 +27,10 @@ class Warp2D {
     Float pdf = 0;  ///< density per unit square area at `position`
   };
 
-  Warp2D() = default;
-  /// `p0`, `p1`: strictly increasing, at least one entry (checked); width, height >= 2; data.size() = the
-  /// product of all, each finite and >= 0 (checked). With `normalize` each slice is scaled to integrate to
-  /// 1 (a slice of zeros becomes uniform) and sample() and invert() may be called; without it only eval().
-  Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, int height,
-         std::span<const Float> data, bool normalize);
-
-  /// Unit-square random numbers to a position of density eval(position). u in [0, 1]².
-  [[nodiscard]] Sample sample(Vec2 u, WarpParams params = {}) const;
-  /// The u that sample() takes to `position`, with the density there.
-  [[nodiscard]] Sample invert(Vec2 position, WarpParams params = {}) const;
-  /// Bilinear value (density where normalised) at `position` in [0, 1]².
-  [[nodiscard]] Float eval(Vec2 position, WarpParams params = {}) const;
-
- private:
-  struct Blend {  // the (at most four) slices around a parameter pair
+  /// The (at most four) slices around a parameter pair; their weights sum to 1. Families with the same
+  /// parameter values share it, and so may any other table laid out [p0][p1].
+  struct Blend {
+    explicit Blend() = default;  // no aggregate: {p0, p1} must mean WarpParams
     std::array<std::size_t, 4> slice{};
     std::array<Float, 4> weight{};
     int count = 0;
@@ -52,8 +40,33 @@ class Warp2D {
     int index = 0;
     Float fraction = 0;
   };
+
+  Warp2D() = default;
+  /// `p0`, `p1`: strictly increasing, at least one entry (checked); width, height >= 2; data.size() = the
+  /// product of all, each finite and >= 0 (checked). With `normalize` each slice is scaled to integrate to
+  /// 1 (a slice of zeros becomes uniform) and sample() and invert() may be called; without it only eval().
+  Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, int height,
+         std::span<const Float> data, bool normalize);
+
+  /// Unit-square random numbers to a position of density eval(position). u in [0, 1]².
+  [[nodiscard]] Sample sample(Vec2 u, const Blend& blend) const;
+  [[nodiscard]] Sample sample(Vec2 u, WarpParams params = {}) const { return sample(u, blend(params)); }
+  /// The u that sample() takes to `position`, with the density there.
+  [[nodiscard]] Sample invert(Vec2 position, const Blend& blend) const;
+  [[nodiscard]] Sample invert(Vec2 position, WarpParams params = {}) const {
+    return invert(position, blend(params));
+  }
+  /// Bilinear value (density where normalised) at `position` in [0, 1]².
+  [[nodiscard]] Float eval(Vec2 position, const Blend& blend) const;
+  [[nodiscard]] Float eval(Vec2 position, WarpParams params = {}) const {
+    return eval(position, blend(params));
+  }
+
   [[nodiscard]] Blend blend(WarpParams params) const;
-  static Cell cell_at(Float coordinate, int nodes);
+  /// `coordinate` is clamped to [0, 1]; index <= nodes - 2.
+  [[nodiscard]] static Cell cell_at(Float coordinate, int nodes);
+
+ private:
   [[nodiscard]] static Float blended(const std::vector<Float>& table, const Blend& b, std::size_t slice_size,
                                      std::size_t offset);
   [[nodiscard]] Float marginal(const Blend& b, int row) const;
