@@ -128,8 +128,8 @@ struct MeasuredBrdf::Data {
   explicit Data(const MeasuredTables& t);
   [[nodiscard]] Incident incident(Vec3 wo) const;
   [[nodiscard]] Half half(const Incident& in, Vec3 wi_unflipped) const;
-  [[nodiscard]] Vec3 half_vector(const Incident& in, Vec2 u) const;
-  [[nodiscard]] Footprint footprint(const Incident& in, Vec2 u, Vec2 s) const;
+  [[nodiscard]] Vec3 half_vector(const Incident& in, UnitPoint u) const;
+  [[nodiscard]] Footprint footprint(const Incident& in, UnitPoint u, UnitPoint s) const;
   [[nodiscard]] SampledSpectrum apply(const Footprint& at, const SampledWavelengths& lambda) const;
 };
 
@@ -177,18 +177,18 @@ Half MeasuredBrdf::Data::half(const Incident& in, Vec3 wi_unflipped) const {
 }
 
 /// Of the flipped frame; the inverse of half().
-Vec3 MeasuredBrdf::Data::half_vector(const Incident& in, Vec2 u) const {
-  const Float theta = polar_angle(u.x), phi = azimuth_angle(u.y);
+Vec3 MeasuredBrdf::Data::half_vector(const Incident& in, UnitPoint u) const {
+  const Float theta = polar_angle(Float(u.x)), phi = azimuth_angle(Float(u.y));
   const Float x = std::sin(theta) * std::cos(phi), y = std::sin(theta) * std::sin(phi), z = std::cos(theta);
   if (!tables.is_isotropic()) return {x, y, z};
   return {x * in.azimuth.x - y * in.azimuth.y, x * in.azimuth.y + y * in.azimuth.x, z};
 }
 
-MeasuredBrdf::Footprint MeasuredBrdf::Data::footprint(const Incident& in, Vec2 u, Vec2 s) const {
+MeasuredBrdf::Footprint MeasuredBrdf::Data::footprint(const Incident& in, UnitPoint u, UnitPoint s) const {
   const Float scale = in.half_over_sigma * (tables.jacobian ? ndf.eval(u) : Float(1));
   const int m = tables.table_size;
   const Warp2D::Cell column = Warp2D::cell_at(s.x, m), row = Warp2D::cell_at(s.y, m);
-  const std::array<Float, 2> along_x{1 - column.fraction, column.fraction},
+  const std::array<double, 2> along_x{1 - column.fraction, column.fraction},
       along_y{1 - row.fraction, row.fraction};
   Footprint out;
   out.extrapolated = in.theta > last_measured_theta_i;
@@ -249,7 +249,7 @@ std::optional<BsdfSample> MeasuredBrdf::sample(Vec3 wo, const BsdfRandom& u, con
   if (!(wo_dot_wm > 0)) return std::nullopt;
   const Vec3 wi = in.flip(wm * (2 * wo_dot_wm) - in.wo);
   const Float sin_theta_m = std::sqrt(sqr(wm.x) + sqr(wm.y));
-  const Float pdf = s.pdf * m.pdf * unit_area_per_solid_angle(m.position.x, sin_theta_m, wo_dot_wm);
+  const Float pdf = s.pdf * m.pdf * unit_area_per_solid_angle(Float(m.position.x), sin_theta_m, wo_dot_wm);
   if (!(wi.z > 0 && pdf > 0)) return std::nullopt;
   const SampledSpectrum value_cos = d.apply(d.footprint(in, m.position, s.position), at.lambda);
   return BsdfSample{.wi = wi, .weight = value_cos / pdf, .pdf = pdf, .lobe = Lobe::kSpecular};

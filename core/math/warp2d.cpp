@@ -7,12 +7,12 @@
 
 #include "core/base/error.h"
 #include "core/math/math.h"
+#include "core/math/piecewise_linear.h"
 
 namespace spectrace {
 namespace {
 
-/// Written so that NaN becomes 0 and not an index out of the table.
-Float clamp_unit(Float x) { return x > 0 ? std::min(x, Float(1)) : Float(0); }
+constexpr double kBelowOne = 0x1.fffffffffffffp-1;  // the largest double below 1
 
 bool is_axis(std::span<const Float> p) {
   if (p.empty() || !std::all_of(p.begin(), p.end(), [](Float x) { return std::isfinite(x); })) return false;
@@ -28,30 +28,19 @@ std::pair<std::size_t, Float> bracket(const std::vector<Float>& nodes, Float x) 
   return {i, (x - nodes[i]) / (nodes[i + 1] - nodes[i])};
 }
 
-/// The last of the cells 0 ... cells - 1 whose cumulative start is at most `mass`: of cells without mass it
-/// picks none, as long as `mass` is below the total.
-template <typename Cumulative>
-int find_cell(int cells, Float mass, const Cumulative& cumulative) {
-  int low = 0, high = cells;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    (cumulative(middle) <= mass ? low : high) = middle;
-  }
-  return low;
-}
-
-/// The t in [0, 1] with a t + (b - a) t²/2 = area, for a density going linearly from a to b. In this form of
-/// the root nothing cancels, whether a = b or a = 0.
-Float invert_linear(Float a, Float b, Float area) {
-  const Float denominator = a + safe_sqrt(a * a + 2 * (b - a) * area);
-  return denominator > 0 ? clamp_unit(2 * area / denominator) : Float(0);
-}
-
-/// The area invert_linear() inverts.
-Float integrate_linear(Float a, Float b, Float t) { return t * (a + t * (b - a) / 2); }
-
 /// u · total kept below total: u = 1 must not fall into massless cells at the far end.
-Float target_mass(Float u, Float total) { return std::min(clamp_unit(u), kOneMinusEpsilon) * total; }
+double target_mass(double u, double total) { return std::min(clamp_unit(u), kBelowOne) * total; }
+
+/// Σ weight · table over the slices of `b`, each `slice_size` long, at `offset` within them.
+template <typename T>
+double blended(const std::vector<T>& table, const Warp2D::Blend& b, std::size_t slice_size,
+               std::size_t offset) {
+  double sum = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(b.count); ++k) {
+    sum += double(b.weight[k]) * double(table[b.slice[k] * slice_size + offset]);
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -76,8 +65,8 @@ Warp2D::Warp2D(std::span<const Float> p0, std::span<const Float> p1, int width, 
 void Warp2D::normalize_slice(std::size_t slice) {
   const auto w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
   Float* const data = data_.data() + slice * w * h;
-  Float* const conditional = conditional_.data() + slice * w * h;
-  Float* const marginal = marginal_.data() + slice * h;
+  double* const conditional = conditional_.data() + slice * w * h;
+  double* const marginal = marginal_.data() + slice * h;
 
   // Trapezoids are exact for piecewise linear values; double, because float sums would shift the CDF by more
   // than its own rounding.
@@ -100,13 +89,13 @@ void Warp2D::normalize_slice(std::size_t slice) {
   double mass = 0;
   for (std::size_t y = 0; y < h; ++y) {
     if (y > 0) mass += 0.5 * (rows[y - 1] + rows[y]) / double(h - 1) / total;
-    marginal[y] = static_cast<Float>(std::min(mass, 1.0));
+    marginal[y] = std::min(mass, 1.0);
     double along = 0;
     double previous = 0;
     for (std::size_t x = 0; x < w; ++x) {
       const double value = double(data[y * w + x]) / total;
       if (x > 0) along += 0.5 * (previous + value) / double(w - 1);
-      conditional[y * w + x] = static_cast<Float>(along);
+      conditional[y * w + x] = along;
       data[y * w + x] = static_cast<Float>(value);
       previous = value;
     }
@@ -131,86 +120,80 @@ Warp2D::Blend Warp2D::blend(WarpParams params) const {
   return b;
 }
 
-Warp2D::Cell Warp2D::cell_at(Float coordinate, int nodes) {
-  const Float scaled = clamp_unit(coordinate) * Float(nodes - 1);
+Warp2D::Cell Warp2D::cell_at(double coordinate, int nodes) {
+  const double scaled = clamp_unit(coordinate) * (nodes - 1);
   const int index = std::min(static_cast<int>(scaled), nodes - 2);
-  return {index, scaled - Float(index)};
+  return {index, scaled - index};
 }
 
-Float Warp2D::blended(const std::vector<Float>& table, const Blend& b, std::size_t slice_size,
-                      std::size_t offset) {
-  Float sum = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(b.count); ++k) {
-    sum += b.weight[k] * table[b.slice[k] * slice_size + offset];
-  }
-  return sum;
-}
-
-Float Warp2D::marginal(const Blend& b, int row) const {
+double Warp2D::marginal(const Blend& b, int row) const {
   return blended(marginal_, b, static_cast<std::size_t>(height_), static_cast<std::size_t>(row));
 }
 
-Float Warp2D::row_integral(const Blend& b, int row) const { return conditional(b, {row, 0}, width_ - 1); }
+double Warp2D::row_integral(const Blend& b, int row) const { return conditional(b, {row, 0}, width_ - 1); }
 
-Float Warp2D::conditional(const Blend& b, Cell row, int column) const {
+double Warp2D::conditional(const Blend& b, Cell row, int column) const {
   const auto size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   const auto offset = static_cast<std::size_t>(row.index * width_ + column);
-  const Float below = blended(conditional_, b, size, offset);
+  const double below = blended(conditional_, b, size, offset);
   if (row.fraction == 0) return below;
   return lerp(below, blended(conditional_, b, size, offset + static_cast<std::size_t>(width_)), row.fraction);
 }
 
-Float Warp2D::value(const Blend& b, Cell row, int column) const {
+double Warp2D::value(const Blend& b, Cell row, int column) const {
   const auto size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   const auto offset = static_cast<std::size_t>(row.index * width_ + column);
   return lerp(blended(data_, b, size, offset),
               blended(data_, b, size, offset + static_cast<std::size_t>(width_)), row.fraction);
 }
 
-Float Warp2D::value(const Blend& b, Vec2 position) const {
+double Warp2D::value(const Blend& b, UnitPoint position) const {
   const Cell row = cell_at(position.y, height_);
   const Cell column = cell_at(position.x, width_);
   return lerp(value(b, row, column.index), value(b, row, column.index + 1), column.fraction);
 }
 
-Float Warp2D::eval(Vec2 position, const Blend& b) const { return value(b, position); }
-
-Warp2D::Sample Warp2D::sample(Vec2 u, const Blend& b) const {
-  SPECTRACE_DCHECK(!marginal_.empty());
-
-  const Float mass = target_mass(u.y, marginal(b, height_ - 1));
-  Cell row{find_cell(height_ - 1, mass, [&](int y) { return marginal(b, y); }), 0};
-  row.fraction = invert_linear(row_integral(b, row.index), row_integral(b, row.index + 1),
-                               (mass - marginal(b, row.index)) * Float(height_ - 1));
-
-  const Float along = target_mass(u.x, conditional(b, row, width_ - 1));
-  Cell column{find_cell(width_ - 1, along, [&](int x) { return conditional(b, row, x); }), 0};
-  column.fraction = invert_linear(value(b, row, column.index), value(b, row, column.index + 1),
-                                  (along - conditional(b, row, column.index)) * Float(width_ - 1));
-
-  const Vec2 position{(Float(column.index) + column.fraction) / Float(width_ - 1),
-                      (Float(row.index) + row.fraction) / Float(height_ - 1)};
-  // At the rounded position, not at the cell's fractions: the same bits as eval() and invert() give.
-  return {position, value(b, position)};
+Float Warp2D::eval(UnitPoint position, const Blend& b) const {
+  return static_cast<Float>(value(b, position));
 }
 
-Warp2D::Sample Warp2D::invert(Vec2 position, const Blend& b) const {
+Warp2D::Sample Warp2D::sample(UnitPoint u, const Blend& b) const {
+  SPECTRACE_DCHECK(!marginal_.empty());
+
+  const double mass = target_mass(u.y, marginal(b, height_ - 1));
+  Cell row{find_cell(height_ - 1, mass, [&](int y) { return marginal(b, y); }), 0};
+  row.fraction = invert_linear(row_integral(b, row.index), row_integral(b, row.index + 1),
+                               (mass - marginal(b, row.index)) * (height_ - 1));
+
+  const double along = target_mass(u.x, conditional(b, row, width_ - 1));
+  Cell column{find_cell(width_ - 1, along, [&](int x) { return conditional(b, row, x); }), 0};
+  column.fraction = invert_linear(value(b, row, column.index), value(b, row, column.index + 1),
+                                  (along - conditional(b, row, column.index)) * (width_ - 1));
+
+  const UnitPoint position{(column.index + column.fraction) / (width_ - 1),
+                           (row.index + row.fraction) / (height_ - 1)};
+  // At the rounded position, not at the cell's fractions: the same bits as eval() and invert() give.
+  return {position, static_cast<Float>(value(b, position))};
+}
+
+Warp2D::Sample Warp2D::invert(UnitPoint position, const Blend& b) const {
   SPECTRACE_DCHECK(!marginal_.empty());
   const Cell row = cell_at(position.y, height_);
   const Cell column = cell_at(position.x, width_);
 
-  const Float mass = marginal(b, row.index) + integrate_linear(row_integral(b, row.index),
-                                                               row_integral(b, row.index + 1), row.fraction) /
-                                                  Float(height_ - 1);
-  const Float left = value(b, row, column.index), right = value(b, row, column.index + 1);
-  const Float along =
-      conditional(b, row, column.index) + integrate_linear(left, right, column.fraction) / Float(width_ - 1);
-  const Float row_total = conditional(b, row, width_ - 1);
+  const double mass =
+      marginal(b, row.index) +
+      integrate_linear(row_integral(b, row.index), row_integral(b, row.index + 1), row.fraction) /
+          (height_ - 1);
+  const double left = value(b, row, column.index), right = value(b, row, column.index + 1);
+  const double along =
+      conditional(b, row, column.index) + integrate_linear(left, right, column.fraction) / (width_ - 1);
+  const double row_total = conditional(b, row, width_ - 1);
 
   // A row without mass has no conditional; sample() never lands inside one, the identity is as good as any.
-  const Vec2 u{row_total > 0 ? clamp_unit(along / row_total) : clamp_unit(position.x),
-               clamp_unit(mass / marginal(b, height_ - 1))};
-  return {u, lerp(left, right, column.fraction)};
+  const UnitPoint u{row_total > 0 ? clamp_unit(along / row_total) : clamp_unit(position.x),
+                    clamp_unit(mass / marginal(b, height_ - 1))};
+  return {u, static_cast<Float>(lerp(left, right, column.fraction))};
 }
 
 }  // namespace spectrace

@@ -17,14 +17,24 @@ struct WarpParams {
   Float p0 = 0, p1 = 0;
 };
 
+/// A point of the unit square, in double (core/math/piecewise_linear.h).
+struct UnitPoint {
+  double x = 0, y = 0;
+
+  constexpr UnitPoint() = default;
+  constexpr UnitPoint(double px, double py) : x(px), y(py) {}
+  constexpr UnitPoint(Vec2 v) : x(v.x), y(v.y) {}
+  constexpr operator Vec2() const { return {static_cast<Float>(x), static_cast<Float>(y)}; }
+};
+
 /// A family of grids [p0][p1][height][width] over the unit square, nodes on its border; between nodes the
 /// value is bilinear, between parameter values linear (the nearest end value holds outside their range).
 /// Immutable.
 class Warp2D {
  public:
   struct Sample {
-    Vec2 position;  ///< in [0, 1]²; x runs along the width
-    Float pdf = 0;  ///< density per unit square area at `position`
+    UnitPoint position;  ///< in [0, 1]²; x runs along the width
+    Float pdf = 0;       ///< density per unit square area at `position`
   };
 
   /// The (at most four) slices around a parameter pair; their weights sum to 1. Families with the same
@@ -38,7 +48,7 @@ class Warp2D {
   /// A cell between two nodes of one axis, and how far into it.
   struct Cell {
     int index = 0;
-    Float fraction = 0;
+    double fraction = 0;
   };
 
   Warp2D() = default;
@@ -49,38 +59,36 @@ class Warp2D {
          std::span<const Float> data, bool normalize);
 
   /// Unit-square random numbers to a position of density eval(position). u in [0, 1]².
-  [[nodiscard]] Sample sample(Vec2 u, const Blend& blend) const;
-  [[nodiscard]] Sample sample(Vec2 u, WarpParams params = {}) const { return sample(u, blend(params)); }
+  [[nodiscard]] Sample sample(UnitPoint u, const Blend& blend) const;
+  [[nodiscard]] Sample sample(UnitPoint u, WarpParams params = {}) const { return sample(u, blend(params)); }
   /// The u that sample() takes to `position`, with the density there.
-  [[nodiscard]] Sample invert(Vec2 position, const Blend& blend) const;
-  [[nodiscard]] Sample invert(Vec2 position, WarpParams params = {}) const {
+  [[nodiscard]] Sample invert(UnitPoint position, const Blend& blend) const;
+  [[nodiscard]] Sample invert(UnitPoint position, WarpParams params = {}) const {
     return invert(position, blend(params));
   }
   /// Bilinear value (density where normalised) at `position` in [0, 1]².
-  [[nodiscard]] Float eval(Vec2 position, const Blend& blend) const;
-  [[nodiscard]] Float eval(Vec2 position, WarpParams params = {}) const {
+  [[nodiscard]] Float eval(UnitPoint position, const Blend& blend) const;
+  [[nodiscard]] Float eval(UnitPoint position, WarpParams params = {}) const {
     return eval(position, blend(params));
   }
 
   [[nodiscard]] Blend blend(WarpParams params) const;
   /// `coordinate` is clamped to [0, 1]; index <= nodes - 2.
-  [[nodiscard]] static Cell cell_at(Float coordinate, int nodes);
+  [[nodiscard]] static Cell cell_at(double coordinate, int nodes);
 
  private:
-  [[nodiscard]] static Float blended(const std::vector<Float>& table, const Blend& b, std::size_t slice_size,
-                                     std::size_t offset);
-  [[nodiscard]] Float marginal(const Blend& b, int row) const;
-  [[nodiscard]] Float row_integral(const Blend& b, int row) const;
-  [[nodiscard]] Float conditional(const Blend& b, Cell row, int column) const;
-  [[nodiscard]] Float value(const Blend& b, Cell row, int column) const;
-  [[nodiscard]] Float value(const Blend& b, Vec2 position) const;
+  [[nodiscard]] double marginal(const Blend& b, int row) const;
+  [[nodiscard]] double row_integral(const Blend& b, int row) const;
+  [[nodiscard]] double conditional(const Blend& b, Cell row, int column) const;
+  [[nodiscard]] double value(const Blend& b, Cell row, int column) const;
+  [[nodiscard]] double value(const Blend& b, UnitPoint position) const;
   void normalize_slice(std::size_t slice);
 
   std::vector<Float> p0_, p1_;
   int width_ = 0, height_ = 0;
-  std::vector<Float> data_;         // [slice][height][width]
-  std::vector<Float> marginal_;     // [slice][height]: mass below each node row; the last is 1
-  std::vector<Float> conditional_;  // [slice][height][width]: integral along each node row, from x = 0
+  std::vector<Float> data_;          // [slice][height][width]
+  std::vector<double> marginal_;     // [slice][height]: mass below each node row; the last is 1
+  std::vector<double> conditional_;  // [slice][height][width]: integral along each node row, from x = 0
 };
 
 }  // namespace spectrace

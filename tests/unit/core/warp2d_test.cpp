@@ -95,7 +95,7 @@ TEST(Warp2D, SlicesAreOrderedFirstParameterFirst) {
 
 TEST(Warp2D, UnnormalizedKeepsItsValues) {
   const std::vector<Float> data = rough_grid(12, 16, 12, 7);
-  EXPECT_EQ(rough_warp(false).eval({Float(3) / 15, Float(3) / 11}, {kP0[0], kP1[0]}), data[3 * 16 + 3]);
+  EXPECT_FLOAT_EQ(rough_warp(false).eval({3.0 / 15, 3.0 / 11}, {kP0[0], kP1[0]}), data[3 * 16 + 3]);
 }
 
 TEST(Warp2D, InvertUndoesSample) {

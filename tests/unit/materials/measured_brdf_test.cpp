@@ -139,6 +139,16 @@ TEST(MeasuredBrdf, WeightIsValueOverPdfInEveryLayout) {
 
 class MeasuredBrdfOfFolder : public testing::TestWithParam<const char*> {};
 
+TEST_P(MeasuredBrdfOfFolder, AgreesWithTheReference) {
+  const auto files = test::measured_files(GetParam());
+  if (files.empty())
+    GTEST_SKIP() << "needs " << GetParam() << " in " << test::data_folder() << " (set SPECTRACE_DATA)";
+  for (const auto& file : files) {
+    SCOPED_TRACE(file);
+    expect_like_reference(read_measured(file));
+  }
+}
+
 TEST_P(MeasuredBrdfOfFolder, WeightIsValueOverPdf) {
   const auto files = test::measured_files(GetParam());
   if (files.empty())
