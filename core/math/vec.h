@@ -76,8 +76,7 @@ struct Transform {
     return r;
   }
   [[nodiscard]] Float determinant() const {
-    return dot({m[0][0], m[0][1], m[0][2]},
-               cross({m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}));
+    return dot({m[0][0], m[0][1], m[0][2]}, cross({m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}));
   }
   /// The cofactor matrix applied to a normal: the inverse transpose times the determinant; not normalised.
   [[nodiscard]] Vec3 normal(Vec3 n) const {

@@ -13,16 +13,21 @@ Xyz cie_xyz_bar(double lambda_nm);
 /// ∫ ȳ dλ [nm] of that table (106.857): the normalisation of every XYZ here.
 double cie_y_integral();
 
-/// Relative spectral power, 1 at 560 nm. D65 is the CIE table (5 nm, linear), A the CIE formula.
+/// Relative spectral power, 1 at 560 nm. D65 is the CIE table (5 nm, linear; its end values hold outside
+/// 300-830 nm), A the CIE formula.
 double illuminant_d65(double lambda_nm);
 double illuminant_a(double lambda_nm);
+/// Y of illuminant_d65: D65 divided by it gives a perfect reflector luminance 1.
+double d65_luminance();
 
 /// ∫ L(λ) (x̄, ȳ, z̄) dλ / ∫ ȳ dλ over `range`, by 1 nm steps: a constant spectrum 1 has Y = 1.
 Xyz spectrum_to_xyz(const Spectrum& emission, WavelengthRange range = {});
 /// As seen under an illuminant, white (reflectance 1) having Y = 1.
 Xyz reflectance_to_xyz(const Spectrum& reflectance, double (*illuminant)(double) = illuminant_d65);
 
-/// Linear transforms between XYZ and linear sRGB (IEC 61966-2-1, D65); exact inverses of each other.
+/// Linear transforms between XYZ and linear sRGB: the primaries of IEC 61966-2-1 and, as white, D65 as
+/// integrated here, so that a perfect reflector is exactly (1, 1, 1); within 3e-4 of the standard's rounded
+/// matrix. Inverses of each other to rounding.
 Rgb xyz_to_rgb(const Xyz& xyz);
 Xyz rgb_to_xyz(const Rgb& rgb);
 /// The sRGB transfer curve for display, [0, 1] to [0, 1].

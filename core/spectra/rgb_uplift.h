@@ -11,8 +11,8 @@ namespace spectrace {
 SigmoidSpectrum uplift_reflectance(const Rgb& rgb);
 /// The same from a table built with the program, for texels: within 2e-3 of `rgb` on the round trip.
 SigmoidSpectrum uplift_reflectance_fast(const Rgb& rgb);
-/// Emission: negative channels are clamped to 0; scale = 2 · max(rgb) leaves the sigmoid at most 1/2, far from
-/// its saturated ends.
+/// Emission: negative channels are clamped to 0; scale = 2 · max(rgb) leaves the sigmoid at most 1/2, far
+/// from its saturated ends.
 RgbIlluminantSpectrum uplift_emission(const Rgb& rgb);
 RgbIlluminantSpectrum uplift_emission_fast(const Rgb& rgb);
 

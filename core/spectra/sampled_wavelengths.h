@@ -58,8 +58,8 @@ class WavelengthDistribution {
  private:
   WavelengthDistribution(WavelengthRange range, std::vector<Float> density);
   WavelengthRange range_;
-  std::vector<Float> density_;     // piecewise linear over equal steps, integrates to 1 [1/nm]
-  std::vector<Float> cumulative_;  // at the same nodes; first 0, last 1
+  std::vector<Float> density_;      // piecewise linear over equal steps, integrates to 1 [1/nm]
+  std::vector<double> cumulative_;  // at the same nodes; first 0, last 1
 };
 
 }  // namespace spectrace

@@ -46,9 +46,11 @@ struct BlackbodySpectrum {
   [[nodiscard]] Float at(Float lambda_nm) const;
 };
 
-/// scale · S(c0 λ² + c1 λ + c2) with S(x) = 1/2 + x / (2 sqrt(1 + x²)), λ in [nm]: Jakob & Hanika 2019,
-/// eqs. 2-3. In [0, scale], smooth.
+/// scale · S(c0 t² + c1 t + c2) with S(x) = 1/2 + x / (2 sqrt(1 + x²)): Jakob & Hanika 2019, eqs. 2-3. In
+/// [0, scale], smooth. t = (λ - 595 nm) / 235 nm is -1 and 1 at the ends of the visible range: with λ in
+/// [nm], as there, the terms are large and cancel, which costs four of a float's seven digits.
 struct SigmoidSpectrum {
+  static constexpr Float kCenterNm = 595, kHalfWidthNm = 235;
   std::array<Float, 3> c{0, 0, 0};
   Float scale = 1;
   [[nodiscard]] Float at(Float lambda_nm) const;
@@ -61,10 +63,12 @@ struct RgbIlluminantSpectrum {
   [[nodiscard]] Float at(Float lambda_nm) const;
 };
 
-/// n² = 1 + Σ b_i λ² / (λ² - c_i), λ in [µm], c in [µm²]; 1 where the sum is negative.
+/// scale · n with n² = 1 + Σ b_i λ² / (λ² - c_i), λ in [µm], c in [µm²]; n = 1 where the sum is negative or
+/// at a pole.
 struct SellmeierSpectrum {
   std::array<Float, 3> b{};
   std::array<Float, 3> c_um2{};
+  Float scale = 1;
   [[nodiscard]] Float at(Float lambda_nm) const;
 };
 
@@ -75,8 +79,8 @@ class Spectrum {
                                RgbIlluminantSpectrum, SellmeierSpectrum>;
   Spectrum() : v_(ConstantSpectrum{0}) {}
   template <typename T>
-    requires std::is_constructible_v<Variant, T>
-  Spectrum(T s) : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor): a spectrum is any of its kinds
+  requires std::is_constructible_v<Variant, T> Spectrum(T s)
+      : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor): a spectrum is any of its kinds
   static Spectrum constant(Float value) { return ConstantSpectrum{value}; }
 
   [[nodiscard]] Float at(Float lambda_nm) const;
@@ -99,12 +103,13 @@ enum class SpectrumRole {
 };
 
 /// Reads the JSON forms of docs/scene-format.md: a number; {"rgb": [r,g,b]}; {"wavelengths_nm": [...],
-/// "values": [...]}; {"file": "x.spd", "column": 1}; {"blackbody_K": T, "scale": s}; {"illuminant": "D65" | "A"
-/// | "E", "scale": s} (1 at 560 nm); {"sellmeier": {"b": [3], "c_um2": [3]}}. Every form takes "scale".
+/// "values": [...]}; {"file": "x.spd", "column": 1}; {"blackbody_K": T, "scale": s}; {"illuminant": "D65" |
+/// "A" | "E", "scale": s} (1 at 560 nm); {"sellmeier": {"b": [3], "c_um2": [3]}}. Every form takes "scale".
 /// Problems are recorded in the document.
 Spectrum parse_spectrum(const JsonValue& json, SpectrumRole role, const Spectrum& fallback = {});
 
-/// Two columns of text (wavelength [nm], value), '#' comments. Throws InputError with line and column.
-TabulatedSpectrum read_spd(const std::filesystem::path& file);
+/// Columns of text separated by blanks, tabs or commas: wavelength [nm], values; '#' begins a comment.
+/// `column` = 1 takes the first after the wavelength. Throws InputError with line and column.
+TabulatedSpectrum read_spd(const std::filesystem::path& file, int column = 1);
 
 }  // namespace spectrace

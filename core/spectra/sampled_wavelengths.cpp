@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/spectra/sampled_wavelengths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/math/piecewise_linear.h"
+#include "core/spectra/color.h"
+
+namespace spectrace {
+namespace {
+
+// The floor of visible(): at its densest the observer's curve is 100 times this, so the few paths that fall
+// on wavelengths the eye hardly sees carry at most that weight.
+constexpr double kVisibleFloor = 0.02;
+
+}  // namespace
+
+void SampledWavelengths::terminate_secondary() {
+  if (kLanes == 1 || secondary_terminated()) return;
+  std::fill(pdf_per_nm_.begin() + 1, pdf_per_nm_.end(), Float(0));
+  pdf_per_nm_[0] /= kLanes;
+}
+
+WavelengthDistribution::WavelengthDistribution(WavelengthRange range, std::vector<Float> density)
+    : range_(range), density_(std::move(density)), cumulative_(density_.size()) {
+  const double step_nm = double(range.width_nm()) / double(density_.size() - 1);
+  double total = 0;
+  for (std::size_t i = 1; i < density_.size(); ++i) {
+    total += 0.5 * step_nm * (double(density_[i - 1]) + double(density_[i]));
+  }
+  double sum = 0;
+  for (std::size_t i = 1; i < density_.size(); ++i) {
+    sum += 0.5 * step_nm * (double(density_[i - 1]) + double(density_[i]));
+    cumulative_[i] = sum / total;
+  }
+  cumulative_.back() = 1;
+  for (Float& d : density_) d = static_cast<Float>(double(d) / total);
+}
+
+WavelengthDistribution WavelengthDistribution::uniform(WavelengthRange range) {
+  SPECTRACE_CHECK(std::isfinite(range.width_nm()) && range.width_nm() > 0);
+  return {range, {1, 1}};
+}
+
+WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range) {
+  SPECTRACE_CHECK(std::isfinite(range.width_nm()) && range.width_nm() > 0);
+  const auto steps = static_cast<std::size_t>(std::ceil(double(range.width_nm())));
+  std::vector<double> seen(steps + 1);
+  double mean = 0;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const Xyz bar = cie_xyz_bar(range.min_nm + double(range.width_nm()) * double(i) / double(steps));
+    seen[i] = bar[0] + bar[1] + bar[2];
+    mean += seen[i] / double(steps + 1);
+  }
+  if (mean == 0) return uniform(range);  // a range nobody sees
+  std::vector<Float> density;
+  for (const double s : seen) density.push_back(static_cast<Float>(s / mean + kVisibleFloor));
+  return {range, std::move(density)};
+}
+
+SampledWavelengths WavelengthDistribution::sample(Float u) const {
+  const int cells = static_cast<int>(density_.size()) - 1;
+  std::array<Float, kLanes> lambda_nm{}, pdf_per_nm_of_lane{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    // Rotated in the unit interval, so that each lane on its own has this density: Wilkie et al. 2014,
+    // sec. 3.
+    double v = clamp_unit(u) + double(lane) / kLanes;
+    if (v >= 1) v -= 1;
+    const int i = find_cell(cells, v, [&](int node) { return cumulative_[static_cast<std::size_t>(node)]; });
+    const auto k = static_cast<std::size_t>(i);
+    const double step_nm = double(range_.width_nm()) / cells;
+    const double t = invert_linear(density_[k], density_[k + 1], (v - cumulative_[k]) / step_nm);
+    const auto l = static_cast<std::size_t>(lane);
+    lambda_nm[l] = std::clamp(static_cast<Float>(double(range_.min_nm) + step_nm * (i + t)), range_.min_nm,
+                              range_.max_nm);
+    pdf_per_nm_of_lane[l] = pdf_per_nm(lambda_nm[l]);
+  }
+  return {lambda_nm, pdf_per_nm_of_lane};
+}
+
+Float WavelengthDistribution::pdf_per_nm(Float lambda_nm) const {
+  if (!(lambda_nm >= range_.min_nm && lambda_nm <= range_.max_nm)) return 0;
+  const auto cells = density_.size() - 1;
+  const Float position = (lambda_nm - range_.min_nm) / range_.width_nm() * Float(cells);
+  const auto i = std::min(static_cast<std::size_t>(position), cells - 1);
+  return lerp(density_[i], density_[i + 1], position - Float(i));
+}
+
+}  // namespace spectrace

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/spectra/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+
+#include "core/base/error.h"
+#include "core/math/math.h"
+#include "core/math/piecewise_linear.h"
+#include "core/spectra/color.h"
+#include "core/spectra/sigmoid_fit.h"
+
+namespace spectrace {
+namespace {
+
+// Steps that differ by less count as equal: wavelengths written with three decimals at 0.5 nm steps. The cell
+// found is then off by at most one node's rounding, which the clamp in at() absorbs.
+constexpr double kEqualStepTolerance = 1e-3;
+
+Float step_inverse(const std::vector<Float>& lambda_nm) {
+  if (lambda_nm.size() < 2) return 0;
+  const auto cells = double(lambda_nm.size() - 1);
+  const double step_nm = (double(lambda_nm.back()) - double(lambda_nm.front())) / cells;
+  for (std::size_t i = 0; i < lambda_nm.size(); ++i) {
+    const double expected = lambda_nm.front() + step_nm * double(i);
+    if (std::abs(lambda_nm[i] - expected) > kEqualStepTolerance * step_nm) return 0;
+  }
+  return static_cast<Float>(1 / step_nm);
+}
+
+bool all_equal(std::span<const Float> values) {
+  return std::all_of(values.begin(), values.end(), [&](Float x) { return x == values.front(); });
+}
+
+}  // namespace
+
+TabulatedSpectrum::TabulatedSpectrum(std::vector<Float> lambda_nm, std::vector<Float> values)
+    : lambda_nm_(std::move(lambda_nm)), values_(std::move(values)) {
+  SPECTRACE_CHECK(!lambda_nm_.empty() && lambda_nm_.size() == values_.size());
+  const auto finite = [](Float x) { return std::isfinite(x); };
+  SPECTRACE_CHECK(std::all_of(lambda_nm_.begin(), lambda_nm_.end(), finite));
+  SPECTRACE_CHECK(std::all_of(values_.begin(), values_.end(), finite));
+  SPECTRACE_CHECK(std::adjacent_find(lambda_nm_.begin(), lambda_nm_.end(), std::greater_equal<>()) ==
+                  lambda_nm_.end());
+  inverse_step_per_nm_ = step_inverse(lambda_nm_);
+}
+
+Float TabulatedSpectrum::at(Float lambda_nm) const {
+  if (!(lambda_nm > lambda_nm_.front())) return values_.front();
+  if (lambda_nm >= lambda_nm_.back()) return values_.back();
+  std::size_t i = 0;
+  if (inverse_step_per_nm_ > 0) {
+    i = std::min(static_cast<std::size_t>((lambda_nm - lambda_nm_.front()) * inverse_step_per_nm_),
+                 lambda_nm_.size() - 2);
+  } else {
+    i = static_cast<std::size_t>(std::upper_bound(lambda_nm_.begin(), lambda_nm_.end(), lambda_nm) -
+                                 lambda_nm_.begin()) -
+        1;
+  }
+  const Float t = (lambda_nm - lambda_nm_[i]) / (lambda_nm_[i + 1] - lambda_nm_[i]);
+  return lerp(values_[i], values_[i + 1], static_cast<Float>(clamp_unit(t)));
+}
+
+Float BlackbodySpectrum::at(Float lambda_nm) const {
+  // CODATA 2018, exact: 2 h c² [W·m²·sr⁻¹] and h c / k [m·K].
+  constexpr double kTwoHcSquared = 1.191042972397188e-16, kHcOverK = 1.438776877503934e-2;
+  const double lambda_m = double(lambda_nm) * 1e-9;
+  if (!(lambda_m > 0) || !(kelvin > 0)) return 0;
+  const double per_m =
+      kTwoHcSquared / (std::pow(lambda_m, 5) * std::expm1(kHcOverK / (lambda_m * double(kelvin))));
+  return static_cast<Float>(double(scale) * per_m * 1e-9);
+}
+
+Float SigmoidSpectrum::at(Float lambda_nm) const {
+  const Float t = (lambda_nm - kCenterNm) * (1 / kHalfWidthNm);
+  const Float x = (c[0] * t + c[1]) * t + c[2];
+  return scale * sigmoid(x);
+}
+
+Float RgbIlluminantSpectrum::at(Float lambda_nm) const {
+  return sigmoid.at(lambda_nm) * static_cast<Float>(illuminant_d65(lambda_nm) / d65_luminance());
+}
+
+Float SellmeierSpectrum::at(Float lambda_nm) const {
+  const double square_um2 = sqr(double(lambda_nm) * 1e-3);
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) sum += double(b[i]) * square_um2 / (square_um2 - double(c_um2[i]));
+  const double n = std::isfinite(sum) ? std::sqrt(1 + std::max(sum, 0.0)) : 1.0;
+  return static_cast<Float>(double(scale) * n);
+}
+
+Float Spectrum::at(Float lambda_nm) const {
+  return std::visit([&](const auto& s) { return s.at(lambda_nm); }, v_);
+}
+
+SampledSpectrum Spectrum::sample(const SampledWavelengths& lambda) const {
+  return std::visit(
+      [&](const auto& s) {
+        SampledSpectrum r;
+        for (int i = 0; i < kLanes; ++i) r[i] = s.at(lambda.lambda_nm(i));
+        return r;
+      },
+      v_);
+}
+
+bool Spectrum::is_constant() const {
+  if (std::holds_alternative<ConstantSpectrum>(v_)) return true;
+  if (const auto* t = std::get_if<TabulatedSpectrum>(&v_)) return all_equal(t->values());
+  if (const auto* s = std::get_if<SigmoidSpectrum>(&v_))
+    return s->scale == 0 || (s->c[0] == 0 && s->c[1] == 0);
+  if (const auto* s = std::get_if<SellmeierSpectrum>(&v_))
+    return s->scale == 0 || s->b == std::array<Float, 3>{};
+  return false;
+}
+
+Float Spectrum::max_over(WavelengthRange range) const {
+  const int steps = std::max(1, static_cast<int>(std::ceil(range.width_nm())));
+  Float largest = at(range.min_nm);
+  for (int i = 1; i <= steps; ++i) {
+    largest = std::max(largest, at(range.min_nm + range.width_nm() * Float(i) / Float(steps)));
+  }
+  if (const auto* t = std::get_if<TabulatedSpectrum>(&v_)) {  // peaks between the steps: its own nodes
+    for (std::size_t i = 0; i < t->values().size(); ++i) {
+      const Float nm = t->lambda_nm()[i];
+      if (nm >= range.min_nm && nm <= range.max_nm) largest = std::max(largest, t->values()[i]);
+    }
+  }
+  return largest;
+}
+
+Spectrum Spectrum::scaled(Float factor) const {
+  return std::visit(
+      [&](auto s) -> Spectrum {
+        using Kind = decltype(s);
+        if constexpr (std::is_same_v<Kind, ConstantSpectrum>) {
+          return ConstantSpectrum{s.value * factor};
+        } else if constexpr (std::is_same_v<Kind, TabulatedSpectrum>) {
+          std::vector<Float> values(s.values().begin(), s.values().end());
+          for (Float& x : values) x *= factor;
+          return TabulatedSpectrum({s.lambda_nm().begin(), s.lambda_nm().end()}, std::move(values));
+        } else if constexpr (std::is_same_v<Kind, RgbIlluminantSpectrum>) {
+          s.sigmoid.scale *= factor;
+          return s;
+        } else {
+          s.scale *= factor;
+          return s;
+        }
+      },
+      v_);
+}
+
+}  // namespace spectrace
