@@ -35,8 +35,8 @@ class Texture {
  public:
   Texture() : v_(Spectrum::constant(0)) {}
   Texture(Spectrum s) : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor): a spectrum is a texture
-  Texture(Checkerboard c) : v_(std::move(c)) {}    // NOLINT(google-explicit-constructor)
-  Texture(BitmapTexture b) : v_(std::move(b)) {}   // NOLINT(google-explicit-constructor)
+  Texture(Checkerboard c) : v_(std::move(c)) {}   // NOLINT(google-explicit-constructor)
+  Texture(BitmapTexture b) : v_(std::move(b)) {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv) const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Spectrum>(v_); }

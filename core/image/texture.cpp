@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/image/texture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/spectra/rgb_uplift.h"
+
+namespace spectrace {
+namespace {
+
+constexpr NumberRange kRepeatRange{.min = 0, .max = 1e6, .min_open = true};
+
+/// The two texels around a coordinate of period 1 and the weight of the second.
+struct Tap {
+  std::size_t first = 0, second = 0;
+  double weight = 0;
+};
+Tap tap(Float coordinate, int texels) {
+  if (!std::isfinite(coordinate)) return {};
+  const double x =
+      (double(coordinate) - std::floor(double(coordinate))) * texels - 0.5;  // texel centres at .5
+  const double below = std::floor(x);
+  const auto wrapped = [texels](double i) {
+    const int k = static_cast<int>(i) % texels;
+    return static_cast<std::size_t>(k < 0 ? k + texels : k);
+  };
+  return {wrapped(below), wrapped(below + 1), x - below};
+}
+
+bool is_odd(const Checkerboard& board, Vec2 uv) {
+  const Float cells = std::floor(uv.x * board.repeat_u) + std::floor(uv.y * board.repeat_v);
+  return std::fmod(cells, Float(2)) != 0;
+}
+
+Texture parse_checkerboard(const JsonValue& json) {
+  Checkerboard board;
+  board.even = parse_spectrum(json.require("even"), SpectrumRole::kReflectance);
+  board.odd = parse_spectrum(json.require("odd"), SpectrumRole::kReflectance);
+  if (const std::vector<double> repeat = json.get("repeat").numbers(2, 2, kRepeatRange); !repeat.empty()) {
+    board.repeat_u = static_cast<Float>(repeat[0]);
+    board.repeat_v = static_cast<Float>(repeat[1]);
+  }
+  json.reject_unknown_keys();
+  return board;
+}
+
+Texture parse_bitmap(const JsonValue& json, const Spectrum& fallback) {
+  const std::filesystem::path file = json.path();
+  if (file.empty()) return fallback;
+  try {
+    const std::array<std::string, 3> rgb{"R", "G", "B"};
+    return BitmapTexture(read_image(file).select(rgb, file.string()));
+  } catch (const InputError& e) {
+    json.error(e.diagnostics().front().text());
+    return fallback;
+  }
+}
+
+}  // namespace
+
+BitmapTexture::BitmapTexture(const Image& rgb) : width_(rgb.width), height_(rgb.height) {
+  SPECTRACE_CHECK(width_ > 0 && height_ > 0 && rgb.channels.size() == 3);
+  std::vector<float> texels = rgb.data;
+  for (float& x : texels) x = x > 0 ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
+  rgb_ = std::make_shared<const std::vector<float>>(std::move(texels));
+}
+
+Rgb BitmapTexture::rgb_at(Vec2 uv) const {
+  const Tap x = tap(uv.x, width_);
+  const Tap y = tap(-uv.y, height_);  // rows run from the top, v from the bottom
+  const auto texel = [&](std::size_t row, std::size_t column, std::size_t c) {
+    return double((*rgb_)[(row * static_cast<std::size_t>(width_) + column) * 3 + c]);
+  };
+  Rgb rgb{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double above = (1 - x.weight) * texel(y.first, x.first, c) + x.weight * texel(y.first, x.second, c);
+    const double below =
+        (1 - x.weight) * texel(y.second, x.first, c) + x.weight * texel(y.second, x.second, c);
+    rgb[c] = (1 - y.weight) * above + y.weight * below;
+  }
+  return rgb;
+}
+
+SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv) const {
+  if (const auto* spectrum = std::get_if<Spectrum>(&v_)) return spectrum->sample(lambda);
+  if (const auto* board = std::get_if<Checkerboard>(&v_)) {
+    return (is_odd(*board, uv) ? board->odd : board->even).sample(lambda);
+  }
+  const SigmoidSpectrum s = uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv));
+  SampledSpectrum r;
+  for (int i = 0; i < kLanes; ++i) r[i] = s.at(lambda.lambda_nm(i));
+  return r;
+}
+
+Texture parse_texture(const JsonValue& json, const Spectrum& fallback) {
+  if (!json.is_object()) return parse_spectrum(json, SpectrumRole::kReflectance, fallback);
+  const JsonValue board = json.get("checkerboard"), bitmap = json.get("bitmap");
+  if (!board.exists() && !bitmap.exists()) return parse_spectrum(json, SpectrumRole::kReflectance, fallback);
+  json.reject_unknown_keys();
+  if (board.exists() && bitmap.exists()) bitmap.error("\"checkerboard\" already gives the texture");
+  return board.exists() ? parse_checkerboard(board) : parse_bitmap(bitmap, fallback);
+}
+
+}  // namespace spectrace
