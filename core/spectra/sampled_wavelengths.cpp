@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "core/math/piecewise_linear.h"
 #include "core/spectra/color.h"
 
