@@ -11,21 +11,15 @@
 #include <vector>
 
 #include "core/spectra/sampled_spectrum.h"
+#include "tests/support/chi_square.h"
 
 namespace spectrace {
 namespace {
 
 using Pair = std::function<Vec2(std::uint64_t)>;
 
-/// Upper critical value of chi-square by Wilson & Hilferty 1931, at the normal quantile z.
-double chi_square_critical(int freedom, double z) {
-  const double s = 2.0 / (9 * freedom);
-  return freedom * std::pow(1 - s + z * std::sqrt(s), 3);
-}
-
-/// All trials of this file together have significance 0.01: 64 trials at most, each at 1 - 0.99^(1/64) =
-/// 1.57e-4 by Šidák, a normal quantile of 3.604. Numbers are fixed, so a pass is a pass for ever.
-constexpr double kQuantile = 3.604;
+/// All trials of this file together have significance 0.01. Numbers are fixed, so a pass is a pass for ever.
+constexpr std::size_t kTrials = 64;  // at most
 
 /// Of `n` pairs over a 16 x 16 grid: catches uneven margins and any correlation coarser than 1/16.
 double chi_square_of(int n, const Pair& pair) {
@@ -39,7 +33,8 @@ double chi_square_of(int n, const Pair& pair) {
   return sum;
 }
 void expect_independent(const char* what, const Pair& pair) {
-  EXPECT_LT(chi_square_of(1 << 17, pair), chi_square_critical(255, kQuantile)) << what;
+  EXPECT_GT(test::chi_square_p_value(chi_square_of(1 << 17, pair), 255), test::sidak_level(0.01, kTrials))
+      << what;
 }
 
 Float bsdf_x(std::uint64_t pixel, std::uint64_t sample, std::uint64_t seed, std::uint32_t vertex = 0) {
