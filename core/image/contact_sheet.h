@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several images side by side in one, with captions.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/image/image.h"
+
+namespace spectrace {
+
+struct SheetItem {
+  Image rgb;            ///< R, G, B, linear; drawn as they are, non-finite pixels too
+  std::string caption;  ///< UTF-8, one line; made smaller where it is wider than its cell
+};
+
+struct ContactSheet {
+  Image image;  ///< R, G, B, linear
+  bool has_captions = false;
+};
+
+/// A font that distributions install (package fonts-dejavu-core on Debian); nothing where none is found.
+std::optional<std::filesystem::path> find_caption_font();
+
+/// At least one item, row by row in `columns` columns (0: as near to a square as it gets); each cell as large
+/// as the largest image, images in its middle. Without a font, or where OpenImageIO was built without
+/// FreeType, there are no captions and no room for them.
+ContactSheet make_contact_sheet(std::span<const SheetItem> items, int columns = 0,
+                                const std::optional<std::filesystem::path>& font = find_caption_font());
+
+}  // namespace spectrace
