@@ -75,7 +75,10 @@ class Reader {
   [[nodiscard]] double number(const Field& field) const {
     double x = 0;
     const char* const end = field.text.data() + field.text.size();
-    const auto [stop, status] = std::from_chars(field.text.data(), end, x);
+    const char* begin = field.text.data();
+    if (field.text.size() > 1 && field.text[0] == '+' && field.text[1] != '-')
+      ++begin;  // from_chars takes none
+    const auto [stop, status] = std::from_chars(begin, end, x);
     // As stored: 1e300 is a number, but no Float.
     if (status != std::errc() || stop != end || !std::isfinite(static_cast<Float>(x))) {
       fail(field.column, fmt::format("expected a finite number, got \"{}\"", field.text.substr(0, 40)));

@@ -116,12 +116,12 @@ bool Spectrum::is_constant() const {
 }
 
 Float Spectrum::max_over(WavelengthRange range) const {
-  const int steps = std::max(1, static_cast<int>(std::ceil(range.width_nm())));
-  Float largest = at(range.min_nm);
-  for (int i = 1; i <= steps; ++i) {
-    largest = std::max(largest, at(range.min_nm + range.width_nm() * Float(i) / Float(steps)));
+  Float largest = std::max(at(range.min_nm), at(range.max_nm));
+  // Whole nanometres: the kinks of D65 lie among them.
+  for (int nm = static_cast<int>(std::ceil(range.min_nm)); nm < range.max_nm; ++nm) {
+    largest = std::max(largest, at(static_cast<Float>(nm)));
   }
-  if (const auto* t = std::get_if<TabulatedSpectrum>(&v_)) {  // peaks between the steps: its own nodes
+  if (const auto* t = std::get_if<TabulatedSpectrum>(&v_)) {  // peaks between them: its own nodes
     for (std::size_t i = 0; i < t->values().size(); ++i) {
       const Float nm = t->lambda_nm()[i];
       if (nm >= range.min_nm && nm <= range.max_nm) largest = std::max(largest, t->values()[i]);

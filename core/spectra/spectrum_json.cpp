@@ -156,6 +156,20 @@ MaybeSpectrum parse_form(const JsonValue& json, std::string_view form, SpectrumR
   return BlackbodySpectrum{static_cast<Float>(kelvin), 1};
 }
 
+/// One mistake, one message: a misspelt key says more than that none of the right ones is there.
+void report_missing_form(const JsonValue& json) {
+  const std::vector<std::string> keys = json.keys();
+  if (json.get("values").exists()) {
+    (void)json.require("wavelengths_nm");
+  } else if (std::all_of(keys.begin(), keys.end(), [](const std::string& key) { return key == "scale"; })) {
+    json.error(
+        "expected one of \"rgb\", \"wavelengths_nm\" and \"values\", \"file\", \"blackbody_K\", "
+        "\"illuminant\", "
+        "\"sellmeier\"");
+  }
+  json.reject_unknown_keys();
+}
+
 MaybeSpectrum parse_object(const JsonValue& json, SpectrumRole role) {
   constexpr std::string_view kForms[] = {"rgb",         "wavelengths_nm", "file",
                                          "blackbody_K", "illuminant",     "sellmeier"};
@@ -171,11 +185,7 @@ MaybeSpectrum parse_object(const JsonValue& json, SpectrumRole role) {
     form = f;
   }
   if (form.empty()) {
-    json.reject_unknown_keys();
-    json.error(
-        "expected one of \"rgb\", \"wavelengths_nm\" and \"values\", \"file\", \"blackbody_K\", "
-        "\"illuminant\", "
-        "\"sellmeier\"");
+    report_missing_form(json);
     return std::nullopt;
   }
   const MaybeSpectrum parsed = parse_form(json, form, role, scale);
