@@ -86,8 +86,9 @@ Limit parse_limit(const std::string& text, bool is_max) {
   if (metric == metrics.end()) {
     std::vector<std::string> known;
     for (const MetricName& m : metrics) known.push_back(m.name);
-    throw wrong(fmt::format("no metric \"{}\"{}; there are {}", name, suggestion(name, known),
-                            fmt::join(known, ", ")));
+    const std::string hint = suggestion(name, known);
+    throw wrong(fmt::format("no metric \"{}\"{}", name,
+                            hint.empty() ? fmt::format("; there are {}", fmt::join(known, ", ")) : hint));
   }
   Limit limit{.metric = &*metric, .is_max = is_max};
   const char *begin = text.data() + equals + 1, *end = text.data() + text.size();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -44,6 +45,17 @@ Layout make_layout(std::span<const SheetItem> items, int columns) {
     layout.cell_height = std::max(layout.cell_height, item.rgb.height);
   }
   return layout;
+}
+
+/// OpenImageIO 2.4 draws wrong glyphs for anything beyond ASCII: better a '?' than another text.
+std::string drawable(std::string_view text) {
+  std::string ascii;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80 && byte < 0xC0) continue;  // the rest of a UTF-8 character
+    ascii += byte >= 0x20 && byte < 0x7f ? c : '?';
+  }
+  return ascii;
 }
 
 /// One channel of ink coverage, or nothing where text cannot be drawn.
@@ -109,7 +121,7 @@ ContactSheet make_contact_sheet(std::span<const SheetItem> items, int columns,
   for (const SheetItem& item : items) {
     SPECTRACE_CHECK(item.rgb.channels.size() == 3 && item.rgb.width > 0 && item.rgb.height > 0);
     if (!font) break;
-    auto coverage = draw_caption(item.caption, layout.cell_width, font->string());
+    auto coverage = draw_caption(drawable(item.caption), layout.cell_width, font->string());
     if (!coverage) break;
     captions.push_back(std::move(*coverage));
   }

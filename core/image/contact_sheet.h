@@ -13,7 +13,7 @@ namespace spectrace {
 
 struct SheetItem {
   Image rgb;            ///< R, G, B, linear; drawn as they are, non-finite pixels too
-  std::string caption;  ///< UTF-8, one line; made smaller where it is wider than its cell
+  std::string caption;  ///< one line of ASCII, other characters become '?'; smaller where it is too wide
 };
 
 struct ContactSheet {
