@@ -222,6 +222,38 @@ TEST(MeasuredTables, ReadsEveryFileOfTheDatabase) {
   }
 }
 
+TEST(MeasuredTables, LuminanceOfRgbFilesIsThatOfTheirColours) {
+  // Holds cell by cell only if both tables' axes are read in the same order.
+  const auto file = data_folder() / "epfl_rgb/satin_purple_rgb.bsdf";
+  SPECTRACE_SKIP_WITHOUT(file);
+  const MeasuredTables tables = read_measured(file);
+  ASSERT_EQ(tables.negative_values, 0u);
+  const std::size_t cells = std::size_t(tables.table_size) * tables.table_size;
+  for (std::size_t slice = 0; slice < tables.slices(); ++slice) {
+    for (std::size_t i = 0; i < cells; ++i) {
+      const float* const rgb = tables.spectra.data() + slice * 3 * cells + i;
+      const double y = 0.2126 * rgb[0] + 0.7152 * rgb[cells] + 0.0722 * rgb[2 * cells];  // ITU-R BT.709
+      EXPECT_NEAR(tables.luminance[slice * cells + i], y, 1e-3 * y + 1e-6);  // coefficients of four digits
+    }
+  }
+}
+
+TEST(MeasuredTables, PolarAxisOfTheWarpIsTheLastOne) {
+  // At the pole, coordinate 0 of the polar axis, visible normals have no density at any azimuth.
+  const auto files = measured_files("epfl_rgb");
+  if (files.empty()) GTEST_SKIP() << "needs epfl_rgb in " << data_folder();
+  for (const auto& file : files) {
+    const MeasuredTables tables = read_measured(file);
+    double pole = 0, first_azimuth = 0;
+    for (std::size_t i = 0; i < tables.vndf.size(); ++i) {
+      if (i % tables.warp_size == 0) pole += tables.vndf[i];
+      if (i / tables.warp_size % tables.warp_size == 0) first_azimuth += tables.vndf[i];
+    }
+    EXPECT_EQ(pole, 0) << file;
+    EXPECT_GT(first_azimuth, 0) << file;
+  }
+}
+
 TEST(MeasuredTables, DamagedFilesGiveAnErrorOrLoad) {
   const auto file = data_folder() / "epfl_rgb/paper_white_rgb.bsdf";
   SPECTRACE_SKIP_WITHOUT(file);
