@@ -31,7 +31,7 @@ std::string_view unit_of(std::string_view field) {
                                  Unit{"wavelengths", "nm"},
                                  Unit{"ndf", "1/sr"},
                                  Unit{"sigma", "1"},
-                                 Unit{"vndf", "1 (density on the unit square)"},
+                                 Unit{"vndf", "unnormalised density"},
                                  Unit{"luminance", "1"},
                                  Unit{"spectra", "f cos / (ndf / 4 sigma)"},
                                  Unit{"rgb", "f cos / (ndf / 4 sigma)"},
