@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress as a line on standard error: percent and time left on a terminal, notes always.
+// Progress on standard error: a line with percent and time left that rewrites itself on a terminal, a plain
+// line now and then elsewhere; notes always.
 #pragma once
 
 #include <chrono>
@@ -19,6 +20,7 @@ class ConsoleProgress final : public Progress {
 
   void update(std::string_view stage, double done, double total) override;
   void note(std::string_view text) override;
+  void finish();  ///< clears the line, before results are printed
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -38,7 +38,7 @@ struct ThinFilm {
 struct ConductorFresnel {
   Spectrum eta = Spectrum::constant(1);  ///< > 0
   Spectrum k;                            ///< >= 0
-  std::optional<ThinFilm> film;
+  std::optional<ThinFilm> film{};
 
   [[nodiscard]] SampledSpectrum reflectance(Float cos_i, const SampledWavelengths& lambda) const;
 };

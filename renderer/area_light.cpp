@@ -75,7 +75,7 @@ std::optional<LightPoint> sample_light(const LightShape& light, Vec3 from, Vec2 
   }
   if (const auto* quad = std::get_if<Quad>(&light)) {
     return sample_flat(quad->corner + quad->edge_u * u.x + quad->edge_v * u.y, quad->scaled_normal(),
-                       max_abs(quad->corner) + max_abs(quad->edge_u) + max_abs(quad->edge_v), from);
+                       largest_coordinate(*quad), from);
   }
   const auto& triangle = std::get<TriangleLight>(light);
   // Square to triangle, area preserving: Turk 1990.

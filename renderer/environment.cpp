@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/error.h"
 #include "core/math/math.h"
@@ -87,22 +89,33 @@ Vec2 image_position(Vec3 local) {
   return {Float(0.5) - std::atan2(local.y, local.x) * (kInvPi / 2), safe_acos(local.z) * kInvPi};
 }
 
-/// The share of each texel in the bilinear image, times the texel's part of the sphere.
-std::vector<double> texel_weights(const std::vector<double>& luminance, int width, int height) {
-  std::vector<double> weights(luminance.size());
-  for (int y = 0; y < height; ++y) {
-    const double sin_theta = std::sin(double(kPi) * (y + 0.5) / height);
-    for (int x = 0; x < width; ++x) {
+/// Mean weights along one axis of the texels before, at and after a cell's own, where `parts` cells divide a
+/// texel: ∫ of their tent functions over the cell.
+std::array<double, 3> tent_weights(int parts, int part) {
+  if (parts == 1) {
+    return {0.125, 0.75, 0.125};
+  }
+  return part == 0 ? std::array{0.25, 0.75, 0.0} : std::array{0.0, 0.75, 0.25};
+}
+
+/// The bilinear image's integral over each cell (parts x parts of them a texel), times the cell's sinθ.
+std::vector<double> cell_weights(const std::vector<double>& luminance, int width, int height, int parts) {
+  std::vector<double> weights;
+  weights.reserve(luminance.size() * parts * parts);
+  for (int cell_y = 0; cell_y < height * parts; ++cell_y) {
+    const double sin_theta = std::sin(double(kPi) * (cell_y + 0.5) / (height * parts));
+    const auto along_y = tent_weights(parts, cell_y % parts);
+    for (int cell_x = 0; cell_x < width * parts; ++cell_x) {
+      const auto along_x = tent_weights(parts, cell_x % parts);
       double sum = 0;
       for (int dy = -1; dy <= 1; ++dy) {
+        const int row = std::clamp(cell_y / parts + dy, 0, height - 1);
         for (int dx = -1; dx <= 1; ++dx) {
-          // ∫ over one texel of the tent functions of the texels around: 1/8, 6/8, 1/8 each way.
-          const double weight = (dx == 0 ? 0.75 : 0.125) * (dy == 0 ? 0.75 : 0.125);
-          const int row = std::clamp(y + dy, 0, height - 1), column = (x + dx + width) % width;
-          sum += weight * luminance[std::size_t(row) * width + column];
+          const int column = (cell_x / parts + dx + width) % width;
+          sum += along_y[dy + 1] * along_x[dx + 1] * luminance[std::size_t(row) * width + column];
         }
       }
-      weights[std::size_t(y) * width + x] = sum * sin_theta;
+      weights.push_back(sum * sin_theta);
     }
   }
   return weights;
@@ -138,16 +151,18 @@ Environment::Environment(const Image& image, const std::filesystem::path& file, 
       luminance.push_back(rgb_to_xyz(value)[1]);
     }
   }
-  const std::vector<double> weights = texel_weights(luminance, width_, height_);
-  double sum = 0, norm = 0;
-  for (int y = 0; y < height_; ++y) {
-    norm += width_ * std::sin(double(kPi) * (y + 0.5) / height_);
-    for (int x = 0; x < width_; ++x) {
-      sum += weights[std::size_t(y) * width_ + x];
-    }
+  // Quarters of texels follow the bilinear image closely: what shines beside a bright texel is at most 4
+  // times what its density promises, against 16 times with whole texels. Beyond 8 million texels that is too
+  // much memory.
+  constexpr std::size_t kMostTexelsToDivide = std::size_t(1) << 23U;
+  const int parts = luminance.size() <= kMostTexelsToDivide ? 2 : 1;
+  const std::vector<double> weights = cell_weights(luminance, width_, height_, parts);
+  double sin_sum = 0;
+  for (int y = 0; y < height_ * parts; ++y) {
+    sin_sum += std::sin(double(kPi) * (y + 0.5) / (height_ * parts));
   }
-  mean_luminance_ = sum / norm;
-  density_ = GridDensity(width_, height_, weights);
+  mean_luminance_ = std::accumulate(weights.begin(), weights.end(), 0.0) / (sin_sum * width_ * parts);
+  density_ = GridDensity(width_ * parts, height_ * parts, weights);
 }
 
 SampledSpectrum Environment::radiance(Vec3 direction, const SampledWavelengths& lambda) const {

@@ -17,6 +17,10 @@ namespace spectrace {
 
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+[[nodiscard]] inline Float max_abs(Vec3 v) {
+  return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+}
+
 struct Ray {
   Vec3 origin;
   Vec3 direction;  ///< any length but zero; distances are in its units
@@ -40,6 +44,12 @@ struct Quad {
     return mirrored ? -n : n;
   }
 };
+
+/// Of its four corners.
+[[nodiscard]] inline Float largest_coordinate(const Quad& q) {
+  return std::max({max_abs(q.corner), max_abs(q.corner + q.edge_u), max_abs(q.corner + q.edge_v),
+                   max_abs(q.corner + q.edge_u + q.edge_v)});
+}
 
 /// Counter-clockwise triangles seen from the front.
 struct TriangleMesh {
@@ -100,9 +110,5 @@ struct SphereCrossings {
 
 /// Does it turn left into right? Sign of the determinant, in double.
 [[nodiscard]] bool is_mirroring(const Transform& transform);
-
-[[nodiscard]] inline Float max_abs(Vec3 v) {
-  return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
-}
 
 }  // namespace spectrace

@@ -17,8 +17,8 @@ struct RenderOptions {
   std::uint64_t seed = 0;
   int threads = 0;     ///< 0 = all cores; changes no bit of the image
   bool layers = true;  ///< diffuse, specular, emission and background apart; off: R,G,B alone, the same bits
-  std::string kernel;  ///< name of a profile to use instead of the leanest that covers the scene; for tests:
-                       ///< changes no bit of the image. One that does not cover it: InternalError
+  std::string kernel{};  ///< name of a profile to use instead of the leanest that covers the scene; for
+                         ///< tests: changes no bit of the image. One that does not cover it: InternalError
 };
 
 /// What was simulated and what it cost.

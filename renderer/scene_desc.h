@@ -26,9 +26,9 @@ struct FilmDesc {
 };
 
 struct IntegratorDesc {
-  int max_depth = 8;        ///< path segments after the camera's; 1 = direct light only
-  int roulette_depth = 4;   ///< Russian roulette from this vertex on
-  bool next_event = true;   ///< sample lights; false leaves it to BSDF sampling alone (tests)
+  int max_depth = 8;       ///< path segments after the camera's; 1 = direct light only
+  int roulette_depth = 4;  ///< Russian roulette from this vertex on
+  bool next_event = true;  ///< sample lights; false leaves it to BSDF sampling alone (tests)
 };
 
 struct SphereDesc {
@@ -39,9 +39,9 @@ struct QuadDesc {  ///< corner + [0,1] edge_u + [0,1] edge_v; normal = edge_u x 
   Vec3 corner{}, edge_u{1, 0, 0}, edge_v{0, 1, 0};
 };
 struct MeshDesc {  ///< triangles of an OBJ file, or given in place
-  std::filesystem::path file;
-  std::vector<Vec3> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::filesystem::path file{};
+  std::vector<Vec3> positions{};
+  std::vector<std::array<std::uint32_t, 3>> triangles{};
   bool smooth_normals = true;  ///< use the file's normals where it has them
 };
 struct InstanceDesc {  ///< a group under one more transform
@@ -49,11 +49,11 @@ struct InstanceDesc {  ///< a group under one more transform
 };
 
 struct ShapeDesc {
-  std::string where;     ///< JSON place, for messages at build time
+  std::string where;  ///< JSON place, for messages at build time
   std::variant<SphereDesc, QuadDesc, MeshDesc, InstanceDesc> kind;
-  std::string material;  ///< name; ignored for instances
-  Transform to_world;
-  std::optional<Spectrum> emission;  ///< radiance [W·m⁻²·sr⁻¹·nm⁻¹], front side; not inside groups
+  std::string material{};  ///< name; ignored for instances
+  Transform to_world{};
+  std::optional<Spectrum> emission{};  ///< radiance [W·m⁻²·sr⁻¹·nm⁻¹], front side; not inside groups
 };
 
 struct GroupDesc {
@@ -69,11 +69,11 @@ struct DirectionalLightDesc {
   Vec3 direction{0, 0, -1};  ///< the way the light travels; unit
   Spectrum irradiance;       ///< [W·m⁻²·nm⁻¹] on a surface facing it
 };
-struct EnvironmentDesc {  ///< constant radiance, or a latitude-longitude image times it
-  std::filesystem::path file;  ///< empty: constant
+struct EnvironmentDesc {         ///< constant radiance, or a latitude-longitude image times it
+  std::filesystem::path file{};  ///< empty: constant
   Spectrum radiance = Spectrum::constant(1);
   Float scale = 1;
-  Transform to_world;  ///< rotation; the image's up is +z
+  Transform to_world{};  ///< rotation; the image's up is +z
 };
 using LightDesc = std::variant<PointLightDesc, DirectionalLightDesc, EnvironmentDesc>;
 

@@ -78,7 +78,7 @@ inline LocalPoint quad_point(const Quad& quad, Float u, Float v) {
   s.normal_s = s.normal_g;
   s.tangent = quad.edge_u;
   s.uv = {u, v};
-  point.magnitude = max_abs(quad.corner) + max_abs(quad.edge_u) + max_abs(quad.edge_v);
+  point.magnitude = largest_coordinate(quad);
   return point;
 }
 

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Different ways to the same mean: light sampling on and off, instances and copies, importance and chance.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/render_scenes.h"
+
+namespace spectrace::test {
+namespace {
+
+// Comparisons of two independent means; 12 of them at alpha 0.01 (Šidák) ask for 3.4 standard errors.
+constexpr double kSigmas = 4;
+
+void expect_same_mean(const Estimate& a, const Estimate& b, const std::string& what) {
+  const double error = std::hypot(a.standard_error, b.standard_error);
+  EXPECT_NEAR(a.mean, b.mean, kSigmas * error + 1e-6 * std::abs(a.mean)) << what;
+  EXPECT_LT(error, 0.02 * std::abs(a.mean)) << what << ": cannot tell a difference";
+}
+
+SceneDesc corner_scene(MaterialDesc floor) {
+  SceneDesc scene = empty_scene();
+  scene.shapes = {quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, floor.name)};
+  scene.materials = {std::move(floor), lambert("black", 0)};
+  look_at_point(scene, {3, 0, 3}, {0, 0, 0});
+  scene.integrator.max_depth = 4;
+  return scene;
+}
+
+std::vector<MaterialDesc> floors() {
+  return {lambert("floor", Float(0.5)),
+          {.name = "floor",
+           .where = "",
+           .kind = RoughConductor{.fresnel = {.eta = Spectrum::constant(1), .k = Spectrum::constant(3)},
+                                  .ggx = {Float(0.3), Float(0.3)}}},
+          {.name = "floor",
+           .where = "",
+           .kind = Glossy{.reflectance = Texture(Spectrum::constant(Float(0.5))),
+                          .fresnel = SchlickFresnel{Spectrum::constant(Float(0.3))},
+                          .ggx = {Float(0.4), Float(0.4)}}}};
+}
+
+void expect_light_sampling_unbiased(SceneDesc scene, const std::string& what) {
+  scene.integrator.next_event = true;
+  const Image with = render_scene(scene, {.spp = 4096, .seed = 1}).image;
+  scene.integrator.next_event = false;
+  const Image without = render_scene(scene, {.spp = 16384, .seed = 2}).image;
+  for (const char* layer : {"", "diffuse", "specular"}) {
+    const Estimate a = estimate_y(with, layer), b = estimate_y(without, layer);
+    if (a.mean == 0 && b.mean == 0) continue;  // a lobe the material does not have
+    expect_same_mean(a, b, what + " layer " + layer);
+  }
+}
+
+TEST(Estimators, LightSamplingKeepsTheMeanOfAreaLights) {
+  for (MaterialDesc& floor : floors()) {
+    SceneDesc scene = corner_scene(floor);
+    scene.shapes.push_back(emitting(sphere({-2, Float(0.5), 3}, Float(1.2), "black"), 5));
+    scene.shapes.push_back(emitting(quad({-1, 3, Float(0.2)}, {2, 0, 0}, {0, 0, 2}, "black"), 3));
+    expect_light_sampling_unbiased(scene, "sphere and quad");
+  }
+}
+
+TEST(Estimators, LightSamplingKeepsTheMeanInsideASphereOfTriangles) {
+  // Emitting triangles all around but below, seen from inside: fronts face inwards by the mirroring scale...
+  // of a mesh whose winding is turned.
+  for (MaterialDesc& floor : floors()) {
+    SceneDesc scene = corner_scene(floor);
+    MeshDesc dome = polyhedral_sphere(7, 10);
+    for (auto& triangle : dome.triangles) std::swap(triangle[1], triangle[2]);
+    scene.shapes.push_back(
+        emitting(moved({.where = "", .kind = dome, .material = "black"}, scaling({5, 5, 5})), 2));
+    scene.camera.origin = {2, 0, 2};
+    expect_light_sampling_unbiased(scene, "dome");
+  }
+}
+
+/// A sky with a bright patch, dim elsewhere.
+std::filesystem::path write_sky(const std::string& name) {
+  Image image(32, 16, {"R", "G", "B"});
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const bool bright = x >= 10 && x < 13 && y >= 4 && y < 6;
+      for (int c = 0; c < 3; ++c) image.at(x, y, c) = bright ? 30.F : 0.2F + 0.1F * float(c);
+    }
+  }
+  const auto file = std::filesystem::path(testing::TempDir()) / name;
+  write_exr(file, image, {});
+  return file;
+}
+
+TEST(Estimators, LightSamplingKeepsTheMeanOfASky) {
+  const auto file = write_sky("estimators_sky.exr");
+  for (MaterialDesc& floor : floors()) {
+    SceneDesc scene = corner_scene(floor);
+    scene.lights = {EnvironmentDesc{.file = file, .to_world = rotation_z(75)}};
+    expect_light_sampling_unbiased(scene, "sky");
+  }
+}
+
+TEST(Estimators, InstancesLookLikeTransformedCopies) {
+  SceneDesc copies = empty_scene();
+  copies.film = {32, 32};
+  copies.materials = {lambert("grey", Float(0.7))};
+  // One delta light, one bounce: no random direction, which would turn with the (arbitrary) tangents.
+  copies.lights = {DirectionalLightDesc{normalize({1, 2, -3}), Spectrum::constant(2)}};
+  copies.integrator.max_depth = 1;
+  SceneDesc instances = copies;
+  const std::vector<ShapeDesc> parts{
+      sphere({Float(0.5), 0, 0}, Float(0.4), "grey"),
+      quad({-1, -1, -1}, {2, 0, 0}, {0, 2, Float(0.5)}, "grey"),
+      moved({.where = "", .kind = polyhedral_sphere(6, 8), .material = "grey"},
+            translation({Float(-0.5), 0, 0}).compose(scaling({Float(0.4), Float(0.4), Float(0.4)})))};
+  instances.groups = {{"parts", parts}};
+  // One of them mirrored: uniform scale, so that the copies' spheres stay spheres.
+  for (const Transform& t :
+       {translation({1, 0, Float(0.7)}).compose(rotation_z(30)),
+        translation({-1, 0, Float(-0.5)}).compose(scaling({Float(-0.8), Float(0.8), Float(0.8)}))}) {
+    instances.shapes.push_back(moved({.where = "", .kind = InstanceDesc{"parts"}}, t));
+    for (const ShapeDesc& part : parts) copies.shapes.push_back(moved(part, t.compose(part.to_world)));
+  }
+  const Image a = render_scene(copies, 64).image, b = render_scene(instances, 64).image;
+  // The same random numbers and the same surfaces: only rounding (an edge met or missed) may differ.
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < a.data.size(); ++i) {
+    difference += std::abs(double(a.data[i]) - b.data[i]);
+    sum += std::abs(a.data[i]);
+  }
+  EXPECT_GT(sum, 0);
+  EXPECT_LT(difference / sum, 2e-4);
+}
+
+TEST(Estimators, InstancedEllipsoidsKeepTheFurnace) {
+  SceneDesc scene = empty_scene();
+  scene.materials = {lambert("white", 1)};
+  scene.groups = {{"ball", {sphere({0, 0, 0}, 1, "white")}}};
+  scene.shapes = {moved({.where = "", .kind = InstanceDesc{"ball"}}, scaling({1, Float(-0.3), 2}))};
+  scene.camera.fov_deg = 10;
+  scene.lights = {sky(1)};
+  scene.integrator.max_depth = 1;  // a self-shadow would show
+  const Estimate y = estimate_y(render_scene(scene, 1024).image);
+  EXPECT_NEAR(y.mean, 1, kSigmas * y.standard_error);
+}
+
+}  // namespace
+}  // namespace spectrace::test

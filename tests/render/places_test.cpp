@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where things appear: camera, environment image, empty scenes.
+#include <gtest/gtest.h>
+
+#include "tests/support/render_scenes.h"
+
+namespace spectrace::test {
+namespace {
+
+/// The pixel of largest luminance.
+std::pair<int, int> brightest(const Image& image) {
+  std::pair<int, int> best{-1, -1};
+  double largest = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double value = pixel_xyz(image, x, y)[1];
+      if (value > largest) {
+        largest = value;
+        best = {x, y};
+      }
+    }
+  }
+  return best;
+}
+
+/// The camera of the other renderers' test scene: from -y, looking at (0, 0, 0.9), z up.
+SceneDesc peer_scene(Vec3 lamp) {
+  SceneDesc scene = empty_scene();
+  scene.film = {33, 33};
+  scene.camera = {
+      .origin = {0, -5, Float(2.2)}, .target = {0, 0, Float(0.9)}, .up = {0, 0, 1}, .fov_deg = 38};
+  scene.materials = {lambert("black", 0)};
+  scene.shapes = {emitting(sphere(lamp, Float(0.1), "black"), 1)};
+  return scene;
+}
+
+TEST(Places, PlusXIsRightAndPlusZIsUp) {
+  const auto middle = brightest(render_scene(peer_scene({0, 0, Float(0.9)}), 16).image);
+  EXPECT_EQ(middle, std::pair(16, 16));
+  const auto right = brightest(render_scene(peer_scene({1, 0, Float(0.9)}), 16).image);
+  EXPECT_GT(right.first, 20);
+  EXPECT_EQ(right.second, 16);
+  const auto up = brightest(render_scene(peer_scene({0, 0, Float(1.9)}), 16).image);
+  EXPECT_EQ(up.first, 16);
+  EXPECT_LT(up.second, 12);
+}
+
+TEST(Places, TheFieldOfViewIsOfTheShorterSide) {
+  // A lamp 18 degrees up or to the right, half the field of view being 19: in the last pixels of the short
+  // side.
+  for (bool wide : {false, true}) {
+    SceneDesc scene = empty_scene();
+    scene.film = wide ? FilmDesc{80, 40} : FilmDesc{40, 80};
+    scene.camera = {.origin = {0, 0, 0}, .target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 38};
+    scene.materials = {lambert("black", 0)};
+    const Float tan18 = std::tan(degrees_to_radians(18));
+    scene.shapes = {emitting(sphere(wide ? Vec3{0, 1, tan18} : Vec3{tan18, 1, 0}, Float(0.01), "black"), 1)};
+    const auto [x, y] = brightest(render_scene(scene, 16).image);
+    EXPECT_EQ(wide ? y : 39 - x, 1) << "wide "
+                                    << wide;  // (1 - tan18 / tan19) · 20 = 1.1 pixels from the edge
+  }
+}
+
+TEST(Places, AnEnvironmentImageIsNotMirrored) {
+  // One bright texel in the upper half, a little right of the middle: looking along +x with z up it must
+  // appear up and to the right; its direction is phi = -(8.5 / 64) turns... from u = 1/2 - phi / 2π.
+  Image image(64, 32, {"R", "G", "B"});
+  const int texel_x = 36, texel_y = 12;
+  for (int c = 0; c < 3; ++c) image.at(texel_x, texel_y, c) = 100;
+  const auto file = std::filesystem::path(testing::TempDir()) / "places_sky.exr";
+  write_exr(file, image, {});
+  SceneDesc scene = empty_scene();
+  scene.film = {41, 41};
+  scene.camera = {.origin = {0, 0, 0}, .target = {1, 0, 0}, .up = {0, 0, 1}, .fov_deg = 90};
+  scene.lights = {EnvironmentDesc{.file = file}};
+  const auto [x, y] = brightest(render_scene(scene, 64).image);
+  const double phi = (texel_x + 0.5 - 32) / 64 * 360, elevation = (16 - texel_y - 0.5) / 32 * 180;
+  const double right = std::tan(phi * kPi / 180),
+               up = std::tan(elevation * kPi / 180) / std::cos(phi * kPi / 180);
+  EXPECT_NEAR(x, 20.5 * (1 + right) - 0.5, 1);
+  EXPECT_NEAR(y, 20.5 * (1 - up) - 0.5, 1);
+  // Turned by 90 degrees about z, what lay along +x lies along +y.
+  std::get<EnvironmentDesc>(scene.lights[0]).to_world = rotation_z(90);
+  scene.camera.target = {0, 1, 0};
+  EXPECT_EQ(brightest(render_scene(scene, 64).image), std::pair(x, y));
+}
+
+TEST(Places, ABrightTexelLightsTheSideItShinesOn) {
+  // The same texel as a lamp: shadows and pictures must agree on where it is.
+  Image image(64, 32, {"R", "G", "B"});
+  for (int c = 0; c < 3; ++c) image.at(16, 16, c) = 100;  // u = 1/4: phi = 90 degrees, +y
+  const auto file = std::filesystem::path(testing::TempDir()) / "places_lamp.exr";
+  write_exr(file, image, {});
+  SceneDesc scene = empty_scene();
+  scene.materials = {lambert("grey", Float(0.5))};
+  scene.shapes = {sphere({0, 0, 0}, 1, "grey")};
+  scene.lights = {EnvironmentDesc{.file = file}};
+  scene.camera.fov_deg = 2;
+  const auto lit_from = [&](Vec3 from) {
+    scene.camera.origin = from;
+    return estimate_y(render_scene(scene, 256).image, "diffuse").mean;
+  };
+  const double front = lit_from({0, 5, 0});
+  EXPECT_GT(front, 0);
+  EXPECT_EQ(lit_from({0, -5, 0}), 0);
+  EXPECT_LT(lit_from({5, 0, 0}), 0.2 * front);
+}
+
+TEST(Places, AnEmptySceneShowsItsBackground) {
+  EXPECT_EQ(estimate_y(render_scene(empty_scene(), 4).image).mean, 0);
+  SceneDesc scene = empty_scene();
+  scene.lights = {sky(2)};
+  const Image image = render_scene(scene, 256).image;
+  const Estimate y = estimate_y(image, "background");
+  EXPECT_NEAR(y.mean, 2, 4 * y.standard_error);
+  EXPECT_EQ(estimate_y(image).mean, y.mean);
+}
+
+TEST(Places, ALightAroundTheCameraIsNoHindrance) {
+  // H18: the camera inside a lamp sees through the back of it? No: backs are black, and nothing is invalid.
+  SceneDesc scene = empty_scene();
+  scene.materials = {lambert("black", 0), lambert("grey", Float(0.5))};
+  scene.shapes = {emitting(sphere(scene.camera.origin, Float(0.5), "black"), 10),
+                  sphere({0, 0, 0}, 1, "grey")};
+  const RenderResult result = render_scene(scene, 16);
+  EXPECT_EQ(result.report.invalid_samples, 0U);
+  EXPECT_EQ(estimate_y(result.image).mean, 0);
+}
+
+TEST(Places, VeryDimAndVeryBrightLightsStayFinite) {
+  // H18.
+  for (Float radiance : {Float(1e-20), Float(1e20)}) {
+    SceneDesc scene = empty_scene();
+    scene.materials = {lambert("black", 0), lambert("grey", Float(0.5))};
+    scene.shapes = {emitting(sphere({0, -2, 3}, Float(0.5), "black"), radiance),
+                    sphere({0, 0, 0}, 1, "grey")};
+    const RenderResult result = render_scene(scene, 16);
+    EXPECT_EQ(result.report.invalid_samples, 0U) << radiance;
+    const double y = estimate_y(result.image).mean / radiance;
+    EXPECT_GT(y, 0.001) << radiance;
+    EXPECT_LT(y, 1) << radiance;
+  }
+}
+
+}  // namespace
+}  // namespace spectrace::test

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/scene_zoo.h"
+
+#include "tests/support/render_scenes.h"
+
+namespace spectrace::test {
+
+namespace {
+
+const SellmeierSpectrum kBk7{.b = {Float(1.03961212), Float(0.231792344), Float(1.01046945)},
+                             .c_um2 = {Float(0.00600069867), Float(0.0200179144), Float(103.560653)}};
+
+SpecularFresnel grey_metal() {
+  return ConductorFresnel{.eta = Spectrum::constant(Float(0.2)), .k = Spectrum::constant(3)};
+}
+
+MaterialDesc glossy(const std::string& name, Texture reflectance) {
+  return {
+      .name = name,
+      .where = "",
+      .kind = Glossy{
+          .reflectance = std::move(reflectance), .fresnel = grey_metal(), .ggx = {Float(0.2), Float(0.2)}}};
+}
+MaterialDesc mirror(const std::string& name) {
+  return {.name = name,
+          .where = "",
+          .kind = SmoothConductor{{.eta = Spectrum::constant(Float(0.2)), .k = Spectrum::constant(3)}}};
+}
+MaterialDesc glass(const std::string& name, Spectrum eta) {
+  return {.name = name, .where = "", .kind = Dielectric{std::move(eta)}};
+}
+
+/// A ball on a floor, seen from the side.
+SceneDesc ball_scene(MaterialDesc ball, MaterialDesc floor) {
+  SceneDesc scene = empty_scene();
+  scene.film = {24, 20};
+  scene.camera = {
+      .origin = {0, -6, Float(2.2)}, .target = {0, 0, Float(0.9)}, .up = {0, 0, 1}, .fov_deg = 38};
+  scene.shapes = {quad({-8, -8, 0}, {16, 0, 0}, {0, 16, 0}, floor.name), sphere({0, 0, 1}, 1, ball.name)};
+  scene.materials = {std::move(ball), std::move(floor), lambert("black", 0)};
+  return scene;
+}
+
+ShapeDesc lamp() { return emitting(sphere({-2, -2, Float(4.5)}, Float(0.5), "black"), 12); }
+
+SceneDesc box_scene() {
+  SceneDesc scene = empty_scene();
+  scene.film = {20, 24};
+  scene.camera = {.origin = {0, Float(-0.95), 0}, .target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 80};
+  scene.materials = {lambert("white", Float(0.7)),
+                     lambert("red", TabulatedSpectrum({360, 580, 640, 830},
+                                                      {Float(0.05), Float(0.1), Float(0.7), Float(0.8)})),
+                     glossy("glossy", Spectrum::constant(Float(0.4))), lambert("black", 0)};
+  scene.shapes = inward_box("white");
+  scene.shapes[0].material = "red";
+  scene.shapes.push_back(sphere({Float(0.3), Float(0.4), Float(-0.6)}, Float(0.4), "glossy"));
+  scene.shapes.push_back(emitting(
+      quad({Float(-0.3), Float(-0.3), Float(0.99)}, {0, Float(0.6), 0}, {Float(0.6), 0, 0}, "black"), 15));
+  return scene;
+}
+
+SceneDesc instance_scene() {
+  SceneDesc scene = ball_scene(glossy("ball", Spectrum::constant(Float(0.5))), lambert("floor", Float(0.5)));
+  scene.shapes.pop_back();
+  scene.groups = {{"pair",
+                   {sphere({0, 0, 1}, Float(0.5), "ball"),
+                    {.where = "",
+                     .kind = polyhedral_sphere(6, 9),
+                     .material = "floor",
+                     .to_world = scaling({Float(0.3), Float(0.3), Float(0.6)})}}}};
+  for (int i = 0; i < 3; ++i) {
+    const Transform turn =
+        rotation_z(Float(40 * i)).compose(scaling({i == 1 ? Float(-1) : Float(1), 1, Float(0.7 + 0.3 * i)}));
+    scene.shapes.push_back({.where = "",
+                            .kind = InstanceDesc{"pair"},
+                            .to_world = translation({Float(1.5 * (i - 1)), 0, Float(0.2)}).compose(turn)});
+  }
+  scene.shapes.push_back(lamp());
+  scene.lights = {sky(Float(0.3))};
+  return scene;
+}
+
+}  // namespace
+
+std::vector<NamedScene> scene_zoo() {
+  std::vector<NamedScene> zoo;
+  zoo.push_back({"empty", empty_scene()});
+  zoo.push_back({"empty under a sky", empty_scene()});
+  zoo.back().scene.lights = {sky(2)};
+  zoo.push_back({"box", box_scene()});
+  zoo.push_back({"box, direct light only", box_scene()});
+  zoo.back().scene.integrator = {.max_depth = 1, .roulette_depth = 0};
+  zoo.push_back({"box, no light sampling", box_scene()});
+  zoo.back().scene.integrator.next_event = false;
+  zoo.push_back({"diffuse ball", ball_scene(lambert("ball", Float(0.6)), lambert("floor", Float(0.4)))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back(
+      {"glossy ball, checkered floor, delta lights",
+       ball_scene(glossy("ball", Spectrum::constant(Float(0.5))),
+                  {.name = "floor",
+                   .where = "",
+                   .kind = Lambert{Texture(Checkerboard{Spectrum::constant(Float(0.2)),
+                                                        Spectrum::constant(Float(0.8)), 16, 16})}})});
+  zoo.back().scene.lights = {PointLightDesc{{2, -2, 3}, Spectrum::constant(20)},
+                             DirectionalLightDesc{normalize({1, 1, -1}), Spectrum::constant(1)}};
+  zoo.push_back({"mirror", ball_scene(mirror("ball"), glossy("floor", Spectrum::constant(Float(0.5))))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back(
+      {"glass", ball_scene(glass("ball", Spectrum::constant(Float(1.5))), lambert("floor", Float(0.5)))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back(
+      {"dispersing glass", ball_scene(glass("ball", kBk7), glossy("floor", Spectrum::constant(Float(0.5))))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.push_back({"instances", instance_scene()});
+  return zoo;
+}
+
+}  // namespace spectrace::test
