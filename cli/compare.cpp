@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `spectrace compare REF TEST`
+// `spectrace compare REF TEST...`
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -29,6 +30,7 @@ constexpr const char* kExamples =
     "  spectrace compare reference.exr test.exr\n"
     "  spectrace compare reference.exr test.exr --max relmse=1e-3 --min ssim=0.99\n"
     "  spectrace compare raw.exr separated.exr --layer specular --min psnr=40 --json figures.json\n"
+    "  spectrace compare raw.exr sun.exr fresnel.exr diffraction.exr\n"
     "\n"
     "Compares the RGB layers that both images have: beauty (R, G, B), diffuse, specular, ... in linear "
     "values\n"
@@ -66,7 +68,8 @@ struct Limit {
 };
 
 struct Arguments {
-  std::string reference, test, json;
+  std::string reference, json;
+  std::vector<std::string> tests;
   std::vector<std::string> layers, max_texts, min_texts;
   std::vector<Limit> limits;
   MetricOptions options;
@@ -113,6 +116,7 @@ struct LimitResult {
 };
 
 struct Comparison {
+  std::string test;
   int width = 0, height = 0;
   std::vector<std::string> non_finite;  ///< one line a channel that has such values, of all channels
   std::vector<std::string> not_compared;
@@ -144,7 +148,7 @@ void find_non_finite(const Image& image, const std::string& file, std::vector<st
 
 /// The layers to show; those that limits hold for first checked to be there.
 std::vector<std::string> common_layers(const Arguments& arguments, const Image& reference, const Image& test,
-                                       std::vector<std::string>& not_compared) {
+                                       Comparison& result) {
   const std::vector<std::string> in_reference = reference.rgb_layers(), in_test = test.rgb_layers();
   const auto has = [](const std::vector<std::string>& all, const std::string& name) {
     return std::find(all.begin(), all.end(), name) != all.end();
@@ -155,7 +159,7 @@ std::vector<std::string> common_layers(const Arguments& arguments, const Image& 
       const std::string layer = name == "beauty" ? "" : name;
       // select() names the file and the channel that is missing.
       static_cast<void>(reference.select(rgb_channels(layer), arguments.reference));
-      static_cast<void>(test.select(rgb_channels(layer), arguments.test));
+      static_cast<void>(test.select(rgb_channels(layer), result.test));
       if (!has(layers, layer)) layers.push_back(layer);
     }
     return layers;
@@ -164,40 +168,41 @@ std::vector<std::string> common_layers(const Arguments& arguments, const Image& 
     if (has(in_test, layer)) {
       layers.push_back(layer);
     } else {
-      not_compared.push_back(fmt::format("{} (only in {})", layer_name(layer), arguments.reference));
+      result.not_compared.push_back(fmt::format("{} (only in {})", layer_name(layer), arguments.reference));
     }
   }
   for (const std::string& layer : in_test) {
-    if (!has(in_reference, layer))
-      not_compared.push_back(fmt::format("{} (only in {})", layer_name(layer), arguments.test));
+    if (!has(in_reference, layer)) {
+      result.not_compared.push_back(fmt::format("{} (only in {})", layer_name(layer), result.test));
+    }
   }
   if (layers.empty()) {
-    throw InputError(arguments.test, "",
-                     fmt::format("has no RGB layer in common with {}", arguments.reference));
+    throw InputError(result.test, "", fmt::format("has no RGB layer in common with {}", arguments.reference));
   }
   if (!arguments.limits.empty() && layers.front() != "") {
-    throw InputError(arguments.test, "",
+    throw InputError(result.test, "",
                      "the limits are for the beauty, which one image lacks; name another by --layer");
   }
   return layers;
 }
 
-Comparison compare(const Arguments& arguments) {
-  const Image reference = read_image(arguments.reference), test = read_image(arguments.test);
+Comparison compare(const Arguments& arguments, const Image& reference, const std::string& test_file) {
+  const Image test = read_image(test_file);
   if (reference.width != test.width || reference.height != test.height) {
-    throw InputError(arguments.test, "",
+    throw InputError(test_file, "",
                      fmt::format("{} x {} pixels, but {} has {} x {}", test.width, test.height,
                                  arguments.reference, reference.width, reference.height));
   }
   Comparison result;
+  result.test = test_file;
   result.width = reference.width;
   result.height = reference.height;
   find_non_finite(reference, arguments.reference, result.non_finite);
-  find_non_finite(test, arguments.test, result.non_finite);
-  for (const std::string& layer : common_layers(arguments, reference, test, result.not_compared)) {
+  find_non_finite(test, test_file, result.non_finite);
+  for (const std::string& layer : common_layers(arguments, reference, test, result)) {
     const auto names = rgb_channels(layer);
     const Metrics metrics = compare_images(reference.select(names, arguments.reference),
-                                           test.select(names, arguments.test), arguments.options);
+                                           test.select(names, test_file), arguments.options);
     result.layers.push_back({layer_name(layer), !arguments.layers.empty() || layer.empty(), metrics});
   }
   for (const LayerResult& layer : result.layers) {
@@ -210,16 +215,38 @@ Comparison compare(const Arguments& arguments) {
   return result;
 }
 
-void print_comparison(const Comparison& result, const Arguments& arguments) {
-  fmt::print("reference {}\ntest      {}\n{} x {} pixels, linear values, no tone mapping\n\n",
-             arguments.reference, arguments.test, result.width, result.height);
-  fmt::print("{:<22}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "layer", "PSNR [dB]", "SSIM", "MAPE",
-             "relMSE", "MSE", "MAE", "max abs", "data range");
-  for (const LayerResult& layer : result.layers) {
-    const Metrics& m = layer.metrics;
-    fmt::print("{:<22}{:>10.3f}{:>10.6f}{:>12.4e}{:>12.4e}{:>12.4e}{:>12.4e}{:>12.4e}{:>12.5g}\n", layer.name,
-               m.psnr_db, m.ssim, m.mape, m.rel_mse, m.mse, m.mae, m.max_abs, m.data_range);
+void print_header(std::string_view first_column) {
+  fmt::print("{:<22}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", first_column, "PSNR [dB]", "SSIM",
+             "MAPE", "relMSE", "MSE", "MAE", "max abs", "data range");
+}
+
+void print_row(const std::string& name, const Metrics& m) {
+  fmt::print("{:<22}{:>10.3f}{:>10.6f}{:>12.4e}{:>12.4e}{:>12.4e}{:>12.4e}{:>12.4e}{:>12.5g}\n", name,
+             m.psnr_db, m.ssim, m.mape, m.rel_mse, m.mse, m.mae, m.max_abs, m.data_range);
+}
+
+/// One test: a row a layer. Several: of each test the layers that limits hold for.
+void print_tables(const std::vector<Comparison>& results, const Arguments& arguments) {
+  const Comparison& first = results.front();
+  fmt::print("reference {}\n", arguments.reference);
+  if (results.size() == 1) fmt::print("test      {}\n", first.test);
+  fmt::print("{} x {} pixels, linear values, no tone mapping\n\n", first.width, first.height);
+  if (results.size() == 1) {
+    print_header("layer");
+    for (const LayerResult& layer : first.layers) print_row(layer.name, layer.metrics);
+    return;
   }
+  print_header("test");
+  for (const Comparison& result : results) {
+    const std::string file = std::filesystem::path(result.test).filename().string();
+    for (const LayerResult& layer : result.layers) {
+      if (layer.is_limited) print_row(layer.name == "beauty" ? file : file + " " + layer.name, layer.metrics);
+    }
+  }
+}
+
+void print_comparisons(const std::vector<Comparison>& results, const Arguments& arguments) {
+  print_tables(results, arguments);
   const MetricOptions& o = arguments.options;
   fmt::print(
       "\ndata range: {}; PSNR's peak and SSIM's L\n"
@@ -227,18 +254,23 @@ void print_comparison(const Comparison& result, const Arguments& arguments) {
       "relMSE: (t-r)^2 / (r^2 + {}); MAPE: |t-r| / (|r| + {}), a fraction; means over pixels and channels\n",
       o.data_range > 0 ? fmt::format("{}", o.data_range) : "the reference's maximum in each layer",
       kSsimWindow, kSsimWindow, o.epsilon, o.mape_floor);
-  if (!result.not_compared.empty()) fmt::print("not compared: {}\n", fmt::join(result.not_compared, ", "));
-  for (const LimitResult& l : result.limits) {
-    fmt::print("{}: {} {}: found {:.6g}\n", l.holds ? "pass" : "FAIL", l.layer, l.limit.text(), l.found);
+  for (const Comparison& result : results) {
+    const std::string prefix = results.size() == 1 ? "" : result.test + ": ";
+    if (!result.not_compared.empty()) {
+      fmt::print("{}not compared: {}\n", prefix, fmt::join(result.not_compared, ", "));
+    }
+    for (const LimitResult& l : result.limits) {
+      fmt::print("{}{}: {} {}: found {:.6g}\n", prefix, l.holds ? "pass" : "FAIL", l.layer, l.limit.text(),
+                 l.found);
+    }
+    for (const std::string& line : result.non_finite) fmt::print("FAIL: {}\n", line);
   }
-  for (const std::string& line : result.non_finite) fmt::print("FAIL: {}\n", line);
 }
 
-std::string json_text(const Comparison& result, const Arguments& arguments) {
-  JsonWriter json;
+void write_json(JsonWriter& json, const Comparison& result, const Arguments& arguments) {
   json.begin_object();
   json.member("reference", arguments.reference);
-  json.member("test", arguments.test);
+  json.member("test", result.test);
   json.member("width", result.width);
   json.member("height", result.height);
   json.member("passes", result.passes());
@@ -274,26 +306,38 @@ std::string json_text(const Comparison& result, const Arguments& arguments) {
   }
   json.end_array();
   json.end_object();
+}
+
+/// One test: its object. Several: an array of them.
+std::string json_text(const std::vector<Comparison>& results, const Arguments& arguments) {
+  JsonWriter json;
+  if (results.size() > 1) json.begin_array();
+  for (const Comparison& result : results) write_json(json, result, arguments);
+  if (results.size() > 1) json.end_array();
   return json.text();
 }
 
 ExitCode compare_command(const Arguments& arguments) {
-  const Comparison result = compare(arguments);
-  print_comparison(result, arguments);
-  if (!arguments.json.empty()) write_file_atomically(arguments.json, json_text(result, arguments));
-  return result.passes() ? ExitCode::kSuccess : ExitCode::kDiffers;
+  const Image reference = read_image(arguments.reference);
+  std::vector<Comparison> results;
+  for (const std::string& test : arguments.tests) results.push_back(compare(arguments, reference, test));
+  print_comparisons(results, arguments);
+  if (!arguments.json.empty()) write_file_atomically(arguments.json, json_text(results, arguments));
+  const bool passes =
+      std::all_of(results.begin(), results.end(), [](const Comparison& c) { return c.passes(); });
+  return passes ? ExitCode::kSuccess : ExitCode::kDiffers;
 }
 
 }  // namespace
 
 void add_compare(CLI::App& app, Action& chosen) {
   CLI::App* command =
-      app.add_subcommand("compare", "Measure how far one image is from another: PSNR, SSIM, MAPE, relMSE");
+      app.add_subcommand("compare", "Measure how far images are from a reference: PSNR, SSIM, MAPE, relMSE");
   command->footer(kExamples);
   const auto arguments = std::make_shared<Arguments>();
   MetricOptions& options = arguments->options;
   command->add_option("reference", arguments->reference, "reference image")->required();
-  command->add_option("test", arguments->test, "image to judge")->required();
+  command->add_option("test", arguments->tests, "images to judge, one or more")->required();
   command->add_option("--max", arguments->max_texts, "METRIC=VALUE: fail above the value; repeatable")
       ->allow_extra_args(false);
   command->add_option("--min", arguments->min_texts, "METRIC=VALUE: fail below the value; repeatable")

@@ -34,8 +34,7 @@ for model in "${models[@]}"; do
 done
 
 step "How close is each model to the measurement?"
-"$spectrace" compare "$out/raw.exr" "${models[@]/#/$out/}" 2>/dev/null ||
-  "$spectrace" compare "$out/raw.exr" "$out/sun.exr" "$out/fresnel.exr" "$out/diffraction.exr"
+"$spectrace" compare "$out/raw.exr" "$out"/{sun,fresnel,diffraction}.exr
 
 step "The pictures"
 "$spectrace" sheet "$out/contact_sheet.png" "$out"/{raw,sun,fresnel,diffraction}.exr \
