@@ -68,38 +68,32 @@ void Warp2D::normalize_slice(std::size_t slice) {
   double* const conditional = conditional_.data() + slice * w * h;
   double* const marginal = marginal_.data() + slice * h;
 
-  // Trapezoids are exact for piecewise linear values; double, because float sums would shift the CDF by more
-  // than its own rounding.
-  const auto row_integral = [&](std::size_t y) {
+  // Trapezoids are exact for piecewise linear values.
+  const auto row_mass = [&](std::size_t y) {
     double sum = 0;
-    for (std::size_t x = 0; x + 1 < w; ++x)
-      sum += 0.5 * (double(data[y * w + x]) + double(data[y * w + x + 1]));
-    return sum / double(w - 1);
-  };
-  std::vector<double> rows(h);
-  for (std::size_t y = 0; y < h; ++y) rows[y] = row_integral(y);
-  double total = 0;
-  for (std::size_t y = 0; y + 1 < h; ++y) total += 0.5 * (rows[y] + rows[y + 1]) / double(h - 1);
-  if (total == 0) {
-    std::fill(data, data + w * h, Float(1));
-    std::fill(rows.begin(), rows.end(), 1.0);
-    total = 1;
-  }
-
-  double mass = 0;
-  for (std::size_t y = 0; y < h; ++y) {
-    if (y > 0) mass += 0.5 * (rows[y - 1] + rows[y]) / double(h - 1) / total;
-    marginal[y] = std::min(mass, 1.0);
-    double along = 0;
-    double previous = 0;
-    for (std::size_t x = 0; x < w; ++x) {
-      const double value = double(data[y * w + x]) / total;
-      if (x > 0) along += 0.5 * (previous + value) / double(w - 1);
-      conditional[y * w + x] = along;
-      data[y * w + x] = static_cast<Float>(value);
-      previous = value;
+    for (std::size_t x = 0; x + 1 < w; ++x) {
+      sum += 0.5 * (double(data[y * w + x]) + double(data[y * w + x + 1])) / double(w - 1);
+      conditional[y * w + x + 1] = sum;
     }
-  }
+    return sum;
+  };
+  const auto accumulate_rows = [&] {
+    double sum = 0, below = row_mass(0);
+    for (std::size_t y = 1; y < h; ++y) {
+      const double above = row_mass(y);
+      sum += 0.5 * (below + above) / double(h - 1);
+      marginal[y] = sum;
+      below = above;
+    }
+    return sum;
+  };
+
+  const double total = accumulate_rows();
+  for (std::size_t i = 0; i < w * h; ++i)
+    data[i] = total > 0 ? static_cast<Float>(double(data[i]) / total) : Float(1);
+  // Once more, from the values as they were rounded: only so is invert() the inverse of sample() to a
+  // double's digits.
+  accumulate_rows();
 }
 
 Warp2D::Blend Warp2D::blend(WarpParams params) const {

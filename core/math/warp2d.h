@@ -86,8 +86,9 @@ class Warp2D {
 
   std::vector<Float> p0_, p1_;
   int width_ = 0, height_ = 0;
-  std::vector<Float> data_;          // [slice][height][width]
-  std::vector<double> marginal_;     // [slice][height]: mass below each node row; the last is 1
+  std::vector<Float> data_;  // [slice][height][width]
+  std::vector<double>
+      marginal_;  // [slice][height]: mass below each node row; the last is 1 to Float rounding
   std::vector<double> conditional_;  // [slice][height][width]: integral along each node row, from x = 0
 };
 
