@@ -246,10 +246,10 @@ std::optional<BsdfSample> MeasuredBrdf::sample(Vec3 wo, const BsdfRandom& u, con
   const Warp2D::Sample m = d.vndf.sample(s.position, in.slices);
   const Vec3 wm = d.half_vector(in, m.position);
   const Float wo_dot_wm = dot(in.wo, wm);
-  if (!(wo_dot_wm > 0)) return std::nullopt;
   const Vec3 wi = in.flip(wm * (2 * wo_dot_wm) - in.wo);
   const Float sin_theta_m = std::sqrt(sqr(wm.x) + sqr(wm.y));
   const Float pdf = s.pdf * m.pdf * unit_area_per_solid_angle(Float(m.position.x), sin_theta_m, wo_dot_wm);
+  // A half vector that faces away from wo has a negative density.
   if (!(wi.z > 0 && pdf > 0)) return std::nullopt;
   const SampledSpectrum value_cos = d.apply(d.footprint(in, m.position, s.position), at.lambda);
   return BsdfSample{.wi = wi, .weight = value_cos / pdf, .pdf = pdf, .lobe = Lobe::kSpecular};

@@ -208,14 +208,14 @@ void read_valid(const TensorFile& file, MeasuredTables& out) {
                            cells));
   }
   out.valid.resize(cells);
-  std::size_t agree = 0;
+  std::size_t lit_set = 0, lit_unset = 0;
   for (std::size_t i = 0; i < cells; ++i) {
     const auto byte = std::to_integer<unsigned>(tensor->bytes[packed ? i / 8 : i]);
     const bool set = packed ? ((byte >> (7 - i % 8)) & 1) != 0 : byte != 0;
     out.valid[i] = set ? 1 : 0;
-    agree += set == (out.luminance[i] > 0) ? 1 : 0;
+    if (out.luminance[i] > 0) ++(set ? lit_set : lit_unset);
   }
-  out.valid_was_inverted = agree < cells - agree;
+  out.valid_was_inverted = lit_unset > lit_set;
   if (out.valid_was_inverted) {
     for (unsigned char& v : out.valid) v = v == 0 ? 1 : 0;
   }

@@ -130,6 +130,12 @@ TEST(MeasuredBrdf, AgreesWithTheReferenceInEveryLayout) {
   }
 }
 
+TEST(MeasuredBrdf, AgreesWithTheReferenceWhereLuminanceIsBlind) {
+  MeasuredTables tables = make_measured({});
+  for (std::size_t i = 0; i < tables.luminance.size(); i += 3) tables.luminance[i] = 0;
+  expect_like_reference(tables);
+}
+
 TEST(MeasuredBrdf, WeightIsValueOverPdfInEveryLayout) {
   for (const SyntheticMeasured& layout : layouts()) {
     SCOPED_TRACE(testing::Message() << "symmetry " << layout.symmetry << " from " << layout.first_phi_i);

@@ -121,6 +121,10 @@ TEST(MeasuredTables, ValidBitsAreReadInEitherPolarity) {
     return true;
   });
   EXPECT_EQ(measured_from_tensors(plain).valid, made.valid);
+
+  MeasuredTables black = made;
+  std::fill(black.luminance.begin(), black.luminance.end(), 0.0f);
+  EXPECT_EQ(measured_from_tensors(measured_to_tensors(black)).valid, made.valid) << "dark is not unmeasured";
 }
 
 TEST(MeasuredTables, EveryMissingFieldIsNamed) {
