@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/statistical/bsdf_registry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "core/base/progress.h"
+#include "materials/acquisition.h"
+#include "materials/half_difference.h"
+#include "tests/support/test_data.h"
+
+namespace spectrace::test {
+
+namespace {
+
+Spectrum ramp(Float at_400_nm, Float at_700_nm) {
+  return TabulatedSpectrum({400, 700}, {at_400_nm, at_700_nm});
+}
+
+// Optical constants of a gold-like metal: absorbing, and different at every wavelength.
+ConductorFresnel gold_like() {
+  return {.eta = ramp(Float(1.5), Float(0.15)), .k = ramp(Float(1.9), Float(4)), .film = {}};
+}
+
+ConductorFresnel film_on_gold() {
+  ConductorFresnel fresnel = gold_like();
+  fresnel.film = ThinFilm{.eta = Spectrum::constant(Float(1.8)), .thickness_nm = 450};
+  return fresnel;
+}
+
+Glossy plastic(Float alpha) {
+  return {.reflectance = ramp(Float(0.2), Float(0.8)),
+          .fresnel = SchlickFresnel{Spectrum::constant(Float(0.04))},
+          .ggx = {alpha, alpha},
+          .diffuse_scale = Float(0.5),
+          .specular_scale = Float(0.5)};
+}
+
+Material built_in(const std::string& name) {
+  return build_material(
+      load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials" / (name + ".json")));
+}
+
+MeasuredTables acquire_for_test(const Material& material, int azimuths = 1, int symmetry = 1) {
+  AcquisitionOptions options;
+  options.azimuths = azimuths;
+  options.symmetry = symmetry;
+  options.lambda_nm = {400, 450, 500, 550, 600, 650, 700};
+  SilentProgress progress;
+  return acquire(material, options, progress);
+}
+
+/// A specular table with one GGX lobe, and colours that differ in every model.
+std::shared_ptr<const SeparatedTables> separated_tables(Float alpha) {
+  SeparatedTables t;
+  t.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
+  t.axis = SpectralAxis::wavelengths({400, 500, 600, 700});
+  t.c_d = {0.1F, 0.3F, 0.2F, 0.4F};
+  t.s_sun = {0.5F, 0.4F, 0.3F, 0.6F};
+  const Ggx ggx{alpha, alpha};
+  for (int h = 0; h < t.grid.n_theta_h; ++h) {
+    for (int d = 0; d < t.grid.n_theta_d; ++d) {
+      const double theta_h = t.grid.theta_h(h), theta_d = t.grid.theta_d(d);
+      for (std::size_t l = 0; l < t.axis.size(); ++l) {
+        const double phase = double(l) + 4 * theta_d;
+        if (h == 0) t.s_fresnel.push_back(static_cast<float>(0.4 + 0.2 * std::sin(phase)));
+        t.s_diffraction.push_back(static_cast<float>(0.4 + 0.2 * std::sin(phase + 3 * theta_h)));
+      }
+      for (int p = 0; p < t.grid.n_phi_d; ++p) {
+        DirectionPair pair = from_half_difference({theta_h, theta_d, t.grid.phi_d(p)});
+        pair.wo.z = std::max(pair.wo.z, Float(0.02));  // pairs below the horizon need some value
+        pair.wi.z = std::max(pair.wi.z, Float(0.02));
+        const Ggx::Reflection r = ggx.reflect(normalize(pair.wo), normalize(pair.wi));
+        t.rho_s.push_back(static_cast<float>(r.value_cos / pair.wi.z * (pair.wo.z + pair.wi.z)));
+      }
+    }
+  }
+  t.source_name = "made for tests";
+  return std::make_shared<const SeparatedTables>(std::move(t));
+}
+
+void add_analytic(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](std::string name, std::function<std::optional<Material>()> make) {
+    cases.push_back({.name = std::move(name),
+                     .make = std::move(make),
+                     .is_reciprocal = true,
+                     .conserves_energy = true,
+                     .is_smooth_at_specular = true});
+  };
+  add("Lambert", [] { return Lambert{ramp(Float(0.1), Float(1))}; });
+  add("RoughConductorAlpha005", [] { return RoughConductor{gold_like(), {Float(0.05), Float(0.05)}}; });
+  add("RoughConductorAlpha025", [] { return RoughConductor{gold_like(), {Float(0.25), Float(0.25)}}; });
+  add("RoughConductorAlpha08", [] { return RoughConductor{gold_like(), {Float(0.8), Float(0.8)}}; });
+  add("RoughConductorAnisotropic", [] { return RoughConductor{gold_like(), {Float(0.08), Float(0.4)}}; });
+  add("RoughConductorThinFilm", [] { return RoughConductor{film_on_gold(), {Float(0.25), Float(0.25)}}; });
+  add("GlossyPlastic", [] { return plastic(Float(0.1)); });
+  add("GlossyNarrow", [] { return plastic(Float(0.005)); });  // as narrow as real paints (hard case H11)
+  add("GlossySpecularOnly", [] {                              // an empty lobe is never chosen (hard case H9)
+    Glossy g = plastic(Float(0.3));
+    g.diffuse_scale = 0;
+    return g;
+  });
+  add("GlossyDiffuseOnly", [] {
+    Glossy g = plastic(Float(0.3));
+    g.specular_scale = 0;
+    return g;
+  });
+  add("BuiltInGlossy", [] { return built_in("glossy"); });
+  add("BuiltInGold", [] { return built_in("gold"); });
+  add("BuiltInPearlescent", [] { return built_in("pearlescent"); });
+}
+
+void add_separated(std::vector<BsdfCase>& cases) {
+  for (const SeparationModel model :
+       {SeparationModel::kSun, SeparationModel::kFresnel, SeparationModel::kDiffraction}) {
+    for (const Float alpha : {Float(0.1), Float(0.4)}) {
+      const std::string name = "Separated_" + name_of(model) + (alpha < Float(0.2) ? "_narrow" : "_wide");
+      cases.push_back({.name = name,
+                       .make = [model, alpha] { return SeparatedBrdf(separated_tables(alpha), model); },
+                       .is_reciprocal = true,
+                       .conserves_energy = false,
+                       .is_smooth_at_specular = true});
+    }
+  }
+}
+
+void add_acquired(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](std::string name, std::function<MeasuredTables()> measure) {
+    cases.push_back(
+        {.name = "Acquired" + std::move(name), .make = [measure] { return MeasuredBrdf(measure()); }});
+  };
+  add("Matte", [] { return acquire_for_test(built_in("matte")); });
+  add("Pearlescent", [] { return acquire_for_test(built_in("pearlescent")); });
+  add("NarrowPlastic", [] { return acquire_for_test(plastic(Float(0.02))); });
+  const RoughConductor brushed{gold_like(), {Float(0.15), Float(0.4)}};
+  add("Anisotropic", [brushed] { return acquire_for_test(brushed, 12); });
+  add("AnisotropicHalf", [brushed] { return acquire_for_test(brushed, 8, 2); });
+  add("AnisotropicQuarter", [brushed] { return acquire_for_test(brushed, 6, 4); });
+}
+
+void add_real(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](const std::string& folder, const std::string& name) {
+    cases.push_back({.name = "Measured_" + name, .make = [folder, name]() -> std::optional<Material> {
+                       const std::filesystem::path file = data_folder() / folder / (name + ".bsdf");
+                       if (!std::filesystem::exists(file)) return std::nullopt;
+                       return MeasuredBrdf(read_measured(file));
+                     }});
+  };
+  for (const char* name :
+       {"acrylic_felt_green", "acrylic_felt_purple",  "acrylic_felt_white", "aurora_white",
+        "cardboard",          "cc_green_malachite",   "cc_iris_purple_gem", "cc_nothern_aurora",
+        "cg_sunflower",       "chm_light_blue",       "chm_mint",           "cm_military_green",
+        "colodur_azure_4e",   "colodur_connemara_4c", "ilm_l3_37_matte",    "ilm_solo_m_68",
+        "irid_flake_paint1",  "irid_flake_paint2",    "leaf_maple",         "paper_white",
+        "satin_purple",       "vch_dragon_eye_red",   "vch_golden_yellow",  "vch_ultra_pink"}) {
+    add("epfl_rgb", std::string(name) + "_rgb");
+  }
+  for (const char* name : {"aurora_white", "cc_nothern_aurora", "irid_flake_paint2", "paper_white"}) {
+    add("epfl_uplifted", std::string(name) + "_spec");
+  }
+}
+
+}  // namespace
+
+const std::vector<BsdfCase>& bsdf_cases() {
+  static const std::vector<BsdfCase> cases = [] {
+    std::vector<BsdfCase> c;
+    add_analytic(c);
+    add_separated(c);
+    add_acquired(c);
+    add_real(c);
+    return c;
+  }();
+  return cases;
+}
+
+const SampledWavelengths& test_wavelengths() {
+  static const SampledWavelengths lambda = [] {
+    std::array<Float, kLanes> nm{}, pdf{};
+    for (int i = 0; i < kLanes; ++i)
+      nm[std::size_t(i)] = Float(440) + Float(220) * Float(i) / Float(kLanes - 1);
+    pdf.fill(1);
+    return SampledWavelengths(nm, pdf);
+  }();
+  return lambda;
+}
+
+}  // namespace spectrace::test
