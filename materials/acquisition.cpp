@@ -155,7 +155,7 @@ void measure_slice(MeasuredTables& t, const Slice& slice, const Warp2D& vndf, co
   }
 }
 
-/// The database's 90-degree slices repeat the last measured ones (hard case H1); nothing in them is valid.
+/// The database's 90-degree slices repeat the last measured ones, flags included (hard case H1).
 void repeat_last_measured(MeasuredTables& t) {
   const std::size_t elevations = t.theta_i.size(),
                     table = std::size_t(t.table_size) * std::size_t(t.table_size);

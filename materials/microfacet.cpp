@@ -26,11 +26,12 @@ Float Ggx::masking(Vec3 w) const { return w.z <= 0 ? Float(0) : 2 * w.z / (w.z +
 
 Ggx::Reflection Ggx::reflect(Vec3 wo, Vec3 wi) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const Vec3 wm = normalize(wo + wi);
-  const Float d = distribution(wm);
+  const Vec3 half = wo + wi;
+  const Float half_length = length(half);
+  const Float d = distribution(half / half_length);
   const Float stretch_o = stretch(*this, wo), stretch_i = stretch(*this, wi);
   Reflection r;
-  r.cos_half = std::clamp(dot(wo, wm), Float(0), Float(1));
+  r.cos_half = std::min(half_length / 2, Float(1));  // wo·wm, but exact at grazing and the same for both
   // D G2 / (4 cosθo) with G2 = 2 cosθi cosθo / (cosθo stretch_i + cosθi stretch_o): Heitz 2014, eq. 99.
   r.value_cos = d / (2 * (wo.z / wi.z * stretch_i + stretch_o));
   // D_visible / (4 wo·wm) with D_visible = G1 (wo·wm) D / cosθo: Heitz 2018, eqs. 1-3 and 17.
