@@ -99,7 +99,8 @@ struct Accel::Impl {
   RTCScene world = nullptr;
   std::vector<RTCScene> groups;
   std::vector<Sphere> spheres;  // never grows after the first sphere is attached
-  // Shape of geometry `g` of the world (instance kNone) or of a group: base + g.
+  // Embree numbers the geometries of each of its scenes from 0: the shape is base + number.
+  std::uint32_t world_base = 0;
   std::vector<std::uint32_t> group_base;      // by group
   std::vector<std::uint32_t> instance_group;  // by instance
   std::uint32_t first_instance_id = 0;
@@ -172,8 +173,7 @@ struct Accel::Impl {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
     rtcSetGeometryUserData(geometry, &spheres.back());
-    rtcSetGeometryBoundsFunction(
-        geometry, [](const RTCBoundsFunctionArguments* args) { sphere_bounds(args); }, nullptr);
+    rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, sphere_intersect);
     rtcSetGeometryOccludedFunction(geometry, sphere_occluded);
     attach(scene, geometry, id);
@@ -221,6 +221,7 @@ Accel::Accel(const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
   }
   impl_->world = impl_->new_scene();
   impl_->attach_shapes(impl_->world, geometry, geometry.top);
+  impl_->world_base = geometry.top.begin;
   impl_->first_instance_id = geometry.top.end - geometry.top.begin;
   for (std::uint32_t i = 0; i < geometry.instances.size(); ++i) {
     impl_->attach_instance(geometry.instances[i], impl_->first_instance_id + i);
@@ -257,6 +258,8 @@ std::optional<Intersection> Accel::intersect(const Ray& ray) const {
   if (rayhit.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
     hit.instance = rayhit.hit.instID[0] - impl_->first_instance_id;
     hit.shape += impl_->group_base[impl_->instance_group[hit.instance]];
+  } else {
+    hit.shape += impl_->world_base;
   }
   return hit;
 }

@@ -105,6 +105,9 @@ TEST(Estimators, InstancesLookLikeTransformedCopies) {
   // One delta light, one bounce: no random direction, which would turn with the (arbitrary) tangents.
   copies.lights = {DirectionalLightDesc{normalize({1, 2, -3}), Spectrum::constant(2)}};
   copies.integrator.max_depth = 1;
+  // A shape beside the instances, of another material: groups come first in the shape list, it does not.
+  copies.materials.push_back(lambert("dark", Float(0.1)));
+  copies.shapes = {quad({-3, -3, -2}, {6, 0, 0}, {0, 6, 0}, "dark")};
   SceneDesc instances = copies;
   const std::vector<ShapeDesc> parts{
       sphere({Float(0.5), 0, 0}, Float(0.4), "grey"),
@@ -128,6 +131,7 @@ TEST(Estimators, InstancesLookLikeTransformedCopies) {
   }
   EXPECT_GT(sum, 0);
   EXPECT_LT(difference / sum, 2e-4);
+  EXPECT_LT(pixel_xyz(a, 31, 31)[1], pixel_xyz(a, 16, 16)[1]);  // both materials are in view
 }
 
 TEST(Estimators, InstancedEllipsoidsKeepTheFurnace) {
