@@ -187,6 +187,8 @@ TEST(TensorFile, EveryTruncationIsAnError) {
   for (std::size_t size = 0; size < good.size(); ++size) {
     EXPECT_THROW((void)TensorFile::parse(std::span(good).first(size), "a.bsdf"), InputError) << size;
   }
+  const std::vector<std::byte> one_short(good.begin(), good.begin() + kFirstEntry + 1);
+  EXPECT_MENTIONS(message_of(one_short), "byte 18: truncated: a field's name length needs 2 bytes");
 }
 
 TEST(TensorFile, NoCorruptionOfTheHeaderCrashes) {
