@@ -54,8 +54,10 @@ TEST(HalfDifference, IgnoresSwapAndRotation) {
     if (a.theta_h > 0.05 && a.theta_d > 0.05) {
       EXPECT_NEAR(std::remainder(a.phi_d - turned.phi_d, kPi64), 0, kAzimuthTolerance);
     }
-    EXPECT_GE(a.phi_d, 0);
-    EXPECT_LT(a.phi_d, kPi64);
+    for (const HalfDifference& each : {a, swapped, turned}) {
+      EXPECT_GE(each.phi_d, 0);
+      EXPECT_LT(each.phi_d, kPi64);
+    }
   }
 }
 
