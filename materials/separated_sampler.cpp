@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "materials/separated_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/math/math.h"
+#include "materials/half_difference.h"
+
+namespace spectrace {
+namespace {
+
+constexpr int kNodesU = 64, kNodesV = 32;
+// ln of the ratio between the coarsest and the finest step of 1 - cosθ_h: the first node lies at 0.04
+// degrees, below the table's own first step, and each later one 11 % further out.
+constexpr Float kLogRange = Float(13.815510557964274);  // ln 1e6
+constexpr Float kLogFloor = Float(1e-6);                // 1 / (e^kLogRange - 1), to 1e-6 of itself
+
+/// Elevations of wo [deg] with a density of their own: dense where the horizon cuts the lobe.
+constexpr std::array<Float, 24> kThetaNodesDeg{0,  5,           10, 15, 20, 25, 30,          35,
+                                               40, 45,          50, 55, 60, 65, 70,          75,
+                                               80, Float(82.5), 85, 87, 88, 89, Float(89.5), 90};
+
+std::array<Float, kThetaNodesDeg.size()> theta_nodes_rad() {
+  std::array<Float, kThetaNodesDeg.size()> nodes{};
+  std::transform(kThetaNodesDeg.begin(), kThetaNodesDeg.end(), nodes.begin(), degrees_to_radians);
+  return nodes;
+}
+
+/// z = 1 - cosθ_h as a function of u, its inverse, and dz/du.
+Float z_of_u(Float u) { return std::min(kLogFloor * std::expm1(kLogRange * u), Float(1)); }
+Float u_of_z(Float z) { return std::min(std::log1p(z / kLogFloor) / kLogRange, Float(1)); }
+Float dz_du(Float z) { return kLogRange * (z + kLogFloor); }
+
+/// Half vector of azimuth phi relative to wo's plane of incidence, which is the xz-plane.
+Vec3 half_vector(Float z, Float phi) {
+  const Float sin_theta = safe_sqrt(z * (2 - z));
+  return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - z};
+}
+
+Vec3 reflect(Vec3 wo, Vec3 h) { return 2 * dot(wo, h) * h - wo; }
+
+Float theta_of(Vec3 wo) { return std::atan2(std::hypot(wo.x, wo.y), wo.z); }
+
+/// s of the model at a grid point, for the whole axis.
+void spectral_row(const SeparatedTables& tables, SeparationModel model, const GridPoint& point,
+                  std::vector<double>& row) {
+  const std::size_t n = tables.axis.size();
+  const auto add = [&](const std::vector<float>& table, std::size_t at, float weight) {
+    for (std::size_t k = 0; k < n; ++k) row[k] += double(weight) * table[at * n + k];
+  };
+  std::fill(row.begin(), row.end(), 0.0);
+  switch (model) {
+    case SeparationModel::kSun:
+      add(tables.s_sun, 0, 1);
+      break;
+    case SeparationModel::kFresnel:
+      for (int i = 0; i < 2; ++i) add(tables.s_fresnel, point.theta_d[i], point.theta_d_weight[i]);
+      break;
+    case SeparationModel::kDiffraction:
+      for (int i = 0; i < 4; ++i) add(tables.s_diffraction, point.angular[i], point.angular_weight[i]);
+      break;
+  }
+}
+
+}  // namespace
+
+SeparatedSampler::SeparatedSampler(const SeparatedTables& tables, SeparationModel model)
+    : axis_size_(tables.axis.size()) {
+  const auto positive = [](const std::vector<float>& v) {
+    return std::any_of(v.begin(), v.end(), [](float x) { return x > 0; });
+  };
+  const std::vector<float>& s = model == SeparationModel::kSun       ? tables.s_sun
+                                : model == SeparationModel::kFresnel ? tables.s_fresnel
+                                                                     : tables.s_diffraction;
+  empty_ = !positive(tables.rho_s) || !positive(s);
+  if (!empty_) tabulate(tables, model);
+}
+
+void SeparatedSampler::tabulate(const SeparatedTables& tables, SeparationModel model) {
+  const auto theta_o = theta_nodes_rad();
+  constexpr std::array<Float, 1> kNoSecondParameter{0};
+  std::vector<Float> density(theta_o.size() * kNodesU * kNodesV);
+  std::vector<double> row(axis_size_), sum(axis_size_);
+  albedo_.resize(theta_o.size() * axis_size_);
+
+  for (std::size_t t = 0; t < theta_o.size(); ++t) {
+    const Vec3 wo{std::sin(theta_o[t]), 0, t + 1 < theta_o.size() ? std::cos(theta_o[t]) : Float(0)};
+    std::fill(sum.begin(), sum.end(), 0.0);
+    for (int i = 0; i < kNodesU; ++i) {
+      const Float z = z_of_u(Float(i) / (kNodesU - 1));
+      for (int j = 0; j < kNodesV; ++j) {
+        const Vec3 h = half_vector(z, kPi * j / (kNodesV - 1));
+        const Float cos_d = dot(wo, h);
+        const Vec3 wi = reflect(wo, h);
+        if (cos_d <= 0 || wi.z <= 0) continue;
+        const GridPoint point = tables.grid.locate(to_half_difference(wo, wi));
+        Float q = 0;
+        for (int c = 0; c < 8; ++c) q += point.cell_weight[c] * tables.rho_s[point.cell[c]];
+        spectral_row(tables, model, point, row);
+        double mean = 0;
+        for (double s : row) mean += s / axis_size_;
+        // Density over (u, v) of the half vector: dω_i = 4 (wo·h) dω_h, dω_h = dz dφ.
+        const double base = double(q) * wi.z / (wi.z + wo.z) * 4 * cos_d * dz_du(z);
+        density[(t * kNodesU + i) * kNodesV + j] = Float(base * mean);
+        // Trapezoid rule over u in [0, 1] and φ in [-π, π].
+        const double edge =
+            (i == 0 || i == kNodesU - 1 ? 0.5 : 1.0) * (j == 0 || j == kNodesV - 1 ? 0.5 : 1.0);
+        const double area = edge * 2 * double(kPi) / ((kNodesU - 1) * (kNodesV - 1));
+        for (std::size_t k = 0; k < axis_size_; ++k) sum[k] += area * base * row[k];
+      }
+    }
+    std::copy(sum.begin(), sum.end(), albedo_.begin() + std::ptrdiff_t(t * axis_size_));
+  }
+  warp_ = Warp2D(theta_o, kNoSecondParameter, kNodesV, kNodesU, density, true);
+}
+
+std::optional<Vec3> SeparatedSampler::sample(Vec3 wo, Vec2 u) const {
+  // The lobe is even in the azimuth: the first bit of u.x picks the side.
+  const Float side = u.x < Float(0.5) ? Float(1) : Float(-1);
+  u.x = std::min(u.x < Float(0.5) ? 2 * u.x : 2 * u.x - 1, Float(1));
+  const Vec2 position = warp_.sample(u, {.p0 = theta_of(wo)}).position;
+  const Vec3 local = half_vector(z_of_u(position.y), side * kPi * position.x);
+
+  const Float sin_o = std::hypot(wo.x, wo.y);
+  const Vec2 x = sin_o > 0 ? Vec2{wo.x / sin_o, wo.y / sin_o} : Vec2{1, 0};
+  const Vec3 h{x.x * local.x - x.y * local.y, x.y * local.x + x.x * local.y, local.z};
+  if (dot(wo, h) <= 0) return std::nullopt;
+  const Vec3 wi = normalize(reflect(wo, h));
+  if (!(wi.z > 0)) return std::nullopt;
+  return wi;
+}
+
+Float SeparatedSampler::pdf(Vec3 wo, Vec3 wi) const {
+  const Vec3 sum = wo + wi;
+  const Float norm = length(sum);
+  if (!(norm > 0)) return 0;
+  const Vec3 h = sum / norm;
+  const Float cos_d = norm / 2;                         // |wo + wi| = 2 cosθ_d
+  const Float z = (h.x * h.x + h.y * h.y) / (1 + h.z);  // 1 - h.z loses all digits near the pole
+  // atan2 keeps its digits where acos of the cosine would not; (0, 0) gives 0.
+  const Float phi = std::atan2(std::abs(wo.x * h.y - wo.y * h.x), wo.x * h.x + wo.y * h.y);
+  const Float density = warp_.eval({phi / kPi, u_of_z(z)}, {.p0 = theta_of(wo)});
+  return density / (2 * kPi * dz_du(z)) / (4 * cos_d);
+}
+
+SampledSpectrum SeparatedSampler::albedo(Float cos_theta_o, const SpectralAxis::Lookup& lookup) const {
+  static const auto kTheta = theta_nodes_rad();
+  const Float theta = safe_acos(cos_theta_o);
+  const auto upper = std::upper_bound(kTheta.begin() + 1, kTheta.end() - 1, theta) - kTheta.begin();
+  const Float t =
+      std::clamp((theta - kTheta[upper - 1]) / (kTheta[upper] - kTheta[upper - 1]), Float(0), Float(1));
+  const float* row = &albedo_[std::size_t(upper) * axis_size_];
+  return (1 - t) * lookup.apply(row - axis_size_) + t * lookup.apply(row);
+}
+
+}  // namespace spectrace
