@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/separation_cache.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "materials/measured_brdf.h"
+#include "materials/separated_tables.h"
+
+namespace spectrace::cli {
+namespace {
+
+// To be raised whenever the same file and options would give other tables.
+constexpr int kMethodVersion = 1;
+constexpr std::size_t kHashDigits = 16;  // 64 bits: no two materials of one folder meet
+
+/// Everything but the thread count, which changes no bit of the result.
+std::string key_of(const std::string& file_sha256, const SeparationOptions& o) {
+  const std::string text = fmt::format(
+      "{} v{} grid {} {} {} {} weight {} eps {} eta {} {} starts {} prior {}", file_sha256, kMethodVersion,
+      o.grid.n_theta_h, o.grid.n_theta_d, o.grid.n_phi_d, o.grid.quadratic_theta_h,
+      static_cast<int>(o.weight), o.epsilon, o.eta_diffuse, o.eta_specular, o.starts, o.diffraction_prior);
+  return sha256_hex(std::as_bytes(std::span(text))).substr(0, kHashDigits);
+}
+
+/// A cached file counts only if it reads back whole.
+bool is_readable(const std::filesystem::path& file) {
+  std::error_code absent;
+  if (!std::filesystem::exists(file, absent)) return false;
+  try {
+    read_separated(file);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+SeparationResult separate_bytes(std::span<const std::byte> bytes, const std::string& sha256,
+                                const std::filesystem::path& bsdf, const SeparationOptions& options,
+                                Progress& progress) {
+  const MeasuredBrdf measured(measured_from_tensors(TensorFile::parse(bytes, bsdf.string())));
+  SeparationResult result = separate(measured, options, progress);
+  result.tables.source_name = bsdf.filename().string();
+  result.tables.source_sha256 = sha256;
+  return result;
+}
+
+}  // namespace
+
+SeparationResult separate_file(const std::filesystem::path& bsdf, const SeparationOptions& options,
+                               Progress& progress) {
+  const std::vector<std::byte> bytes = read_file(bsdf);
+  return separate_bytes(bytes, sha256_hex(bytes), bsdf, options, progress);
+}
+
+CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std::filesystem::path& folder,
+                                   const SeparationOptions& options, Progress& progress) {
+  const std::vector<std::byte> bytes = read_file(bsdf);
+  const std::string sha256 = sha256_hex(bytes);
+  CachedSeparation cached;
+  cached.file = folder / fmt::format("{}-{}.sep", bsdf.stem().string(), key_of(sha256, options));
+  cached.was_cached = is_readable(cached.file);
+  if (cached.was_cached) return cached;
+
+  SeparationResult result = separate_bytes(bytes, sha256, bsdf, options, progress);
+  if (!result.report.usable)
+    throw InputError(bsdf.string(), {}, "cannot be separated: " + result.report.verdict);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw InputError(folder.string(), {}, "cannot make this folder: " + failed.message());
+  separated_to_tensors(result.tables).write(cached.file);
+  cached.report = std::move(result.report);
+  return cached;
+}
+
+}  // namespace spectrace::cli

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Step 1 (sec. 4.2): Lambert + GGX fitted to the achromatic BRDF, eqs. 7-15.
+#pragma once
+
+#include <array>
+
+#include "separation/cell_table.h"
+#include "separation/separate.h"
+
+namespace spectrace {
+
+/// The parameters as the solver sees them: alpha_d, rho_0, F_0, ln a. The logarithm makes steps in roughness
+/// relative; it moves no optimum.
+inline constexpr int kFitParameters = 4;
+using FitVector = std::array<double, kFitParameters>;
+FitVector to_vector(const AnalyticFit& fit);
+AnalyticFit from_vector(const FitVector& x);
+
+/// Eq. 12 (GGX alone, without the Lambert term) at one pair of directions [1/sr]; finite down to the horizon.
+double ggx_value(const AnalyticFit& fit, double cos_h, double cos_d, double cos_i, double cos_o);
+
+/// ½ Σ r² over all fitted cells with r of eqs. 7-10, and what Gauss-Newton needs of it.
+struct FitEquations {
+  double cost = 0;
+  FitVector gradient{};                             ///< Jᵀr
+  std::array<FitVector, kFitParameters> hessian{};  ///< JᵀJ
+};
+FitEquations fit_equations(const CellTable& table, double epsilon, const FitVector& x);
+
+struct AnalyticSolution {
+  AnalyticFit fit;
+  bool converged = false;
+  double initial_cost = 0, final_cost = 0;
+  double gradient_max = 0;  ///< of the cost per cell, projected on the bounds, infinity norm
+  int iterations = 0;       ///< on all cells
+};
+/// Solved by Ceres (trust region with bounds): `options.starts` starts are followed on a part of the cells,
+/// and the one of lowest cost is solved on all. `initial_cost` is the cost on all cells where that last solve
+/// began.
+AnalyticSolution fit_analytic(const CellTable& table, const SeparationOptions& options);
+
+}  // namespace spectrace

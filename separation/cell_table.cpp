@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "separation/cell_table.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "materials/half_difference.h"
+#include "separation/parallel.h"
+
+namespace spectrace {
+namespace {
+
+// Where only one order of a pair was measured, f̂ = v1 / cosθi, and the other direction lies beyond the last
+// measured elevation (78 to 85 degrees in the EPFL files). Nearer the horizon than this the quotient is noise
+// divided by nothing (hard case H3), and the average over both orders, which needs no quotient, takes over.
+constexpr double kMinSingleOrderCosine = 0.05;
+
+/// Rows and weights whose sum is q = f̂ (cosθi + cosθo) at a pair of directions.
+struct Pair {
+  std::array<MeasuredBrdf::Footprint, 2> footprint;
+  std::array<double, 2> scale{};
+  bool measured = false, extrapolated = false, any = false;
+};
+
+/// v1 = f(wo, wi) cosθi and v2 = f(wi, wo) cosθo are what the file holds, so q = v1 + v2 is the
+/// cosine-weighted mean of both orders: no division, bounded at grazing.
+Pair locate_pair(const MeasuredBrdf& brdf, const DirectionPair& directions) {
+  Pair pair;
+  const std::array<std::optional<MeasuredBrdf::Footprint>, 2> orders{
+      brdf.footprint(directions.wo, directions.wi), brdf.footprint(directions.wi, directions.wo)};
+  const std::array<double, 2> cosine{directions.wi.z, directions.wo.z};  // what each order is multiplied by
+  bool all_extrapolated = true;
+  std::array<bool, 2> measured{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!orders[i]) continue;
+    pair.any = true;
+    pair.footprint[i] = *orders[i];
+    pair.scale[i] = 1;
+    measured[i] = orders[i]->measured;
+    all_extrapolated = all_extrapolated && orders[i]->extrapolated;
+  }
+  pair.measured = measured[0] || measured[1];
+  pair.extrapolated = pair.any && all_extrapolated;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (measured[i] && !measured[1 - i] && cosine[i] >= kMinSingleOrderCosine) {
+      pair.scale[i] = (cosine[0] + cosine[1]) / cosine[i];
+      pair.scale[1 - i] = 0;
+    }
+  }
+  return pair;
+}
+
+/// The cells of one theta_h: slices are filled in parallel and joined in order.
+void fill_slice(const MeasuredBrdf& brdf, const SeparationOptions& options,
+                const std::vector<float>& row_mean, int h, CellTable& slice, float* mean_q) {
+  const HalfDifferenceGrid& grid = options.grid;
+  slice.node_begin = {0};
+  for (int d = 0; d < grid.n_theta_d; ++d) {
+    slice.begin.push_back(static_cast<std::uint32_t>(slice.cell.size()));
+    for (int p = 0; p < grid.n_phi_d; ++p) {
+      const std::size_t cell = grid.index(h, d, p);
+      const DirectionPair directions =
+          from_half_difference({grid.theta_h(h), grid.theta_d(d), grid.phi_d(p)});
+      mean_q[cell] = -1;
+      if (!(directions.wo.z > 0 && directions.wi.z > 0)) {
+        ++slice.counts.below_horizon;
+        continue;
+      }
+      const Pair pair = locate_pair(brdf, directions);
+      double q = 0;
+      for (std::size_t i = 0; i < 2; ++i) {
+        for (int n = 0; n < pair.footprint[i].count; ++n) {
+          q += pair.scale[i] * double(pair.footprint[i].weight[n]) *
+               double(row_mean[pair.footprint[i].row[n]]);
+        }
+      }
+      if (pair.any) mean_q[cell] = static_cast<float>(q);
+      if (!pair.measured) {
+        ++(pair.extrapolated ? slice.counts.extrapolated : slice.counts.unmeasured);
+        continue;
+      }
+      ++slice.counts.measured;
+      const double cos_i = directions.wi.z, cos_o = directions.wo.z;
+      const double weight = cosine_weight(cos_i, cos_o, options);
+      slice.cell.push_back(static_cast<std::uint32_t>(cell));
+      slice.cos_i.push_back(static_cast<float>(cos_i));
+      slice.cos_o.push_back(static_cast<float>(cos_o));
+      slice.weight.push_back(static_cast<float>(weight));
+      slice.mean.push_back(static_cast<float>(q / (cos_i + cos_o)));
+      for (std::size_t i = 0; i < 2; ++i) {
+        const double scale = pair.scale[i] * weight / (cos_i + cos_o);
+        for (int n = 0; n < pair.footprint[i].count && scale > 0; ++n) {
+          slice.node_row.push_back(pair.footprint[i].row[n]);
+          slice.node_weight.push_back(static_cast<float>(scale * double(pair.footprint[i].weight[n])));
+        }
+      }
+      slice.node_begin.push_back(static_cast<std::uint32_t>(slice.node_row.size()));
+    }
+  }
+}
+
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+CellTable join(const HalfDifferenceGrid& grid, std::vector<CellTable>& slices, std::vector<float> mean_q) {
+  CellTable table;
+  table.grid = grid;
+  table.mean_q = std::move(mean_q);
+  table.counts.cells = grid.size();
+  std::size_t cells = 0, nodes = 0;
+  for (const CellTable& slice : slices) cells += slice.cell.size(), nodes += slice.node_row.size();
+  table.node_row.reserve(nodes);
+  table.node_weight.reserve(nodes);
+  table.node_begin.reserve(cells + 1);
+  for (CellTable& slice : slices) {
+    const auto first_cell = static_cast<std::uint32_t>(table.cell.size());
+    const auto first_node = static_cast<std::uint32_t>(table.node_row.size());
+    for (std::uint32_t b : slice.begin) table.begin.push_back(first_cell + b);
+    for (std::size_t i = 0; i + 1 < slice.node_begin.size(); ++i) {
+      table.node_begin.push_back(first_node + slice.node_begin[i]);
+    }
+    append(table.cell, slice.cell);
+    append(table.cos_i, slice.cos_i);
+    append(table.cos_o, slice.cos_o);
+    append(table.weight, slice.weight);
+    append(table.mean, slice.mean);
+    append(table.node_row, slice.node_row);
+    append(table.node_weight, slice.node_weight);
+    table.counts.below_horizon += slice.counts.below_horizon;
+    table.counts.measured += slice.counts.measured;
+    table.counts.extrapolated += slice.counts.extrapolated;
+    table.counts.unmeasured += slice.counts.unmeasured;
+    slice = {};
+  }
+  table.begin.push_back(static_cast<std::uint32_t>(table.cell.size()));
+  table.node_begin.push_back(static_cast<std::uint32_t>(table.node_row.size()));
+  return table;
+}
+
+/// The mean over the axis of each row of the measurement: it commutes with interpolation.
+std::vector<float> row_means(const MeasuredBrdf& brdf) {
+  const MeasuredTables& tables = brdf.tables();
+  const std::size_t rows = tables.slices() * std::size_t(tables.table_size) * std::size_t(tables.table_size);
+  const std::size_t n = brdf.axis().size();
+  std::vector<float> means(rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const float* row = brdf.spectrum(static_cast<std::uint32_t>(r));
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) sum += double(row[k]);
+    means[r] = static_cast<float>(sum / double(n));
+  }
+  return means;
+}
+
+}  // namespace
+
+double cosine_weight(double cos_i, double cos_o, const SeparationOptions& options) {
+  const double cosines = options.weight == CosineWeight::kProduct ? cos_i * cos_o : std::max(cos_i, cos_o);
+  return std::max(cosines, options.epsilon);
+}
+
+CellTable build_cell_table(const MeasuredBrdf& measured, const SeparationOptions& options) {
+  const std::vector<float> means = row_means(measured);
+  std::vector<CellTable> slices(std::size_t(options.grid.n_theta_h));
+  std::vector<float> mean_q(options.grid.size());
+  parallel_chunks(slices.size(), [&](std::size_t h) {
+    fill_slice(measured, options, means, static_cast<int>(h), slices[h], mean_q.data());
+  });
+  return join(options.grid, slices, std::move(mean_q));
+}
+
+}  // namespace spectrace

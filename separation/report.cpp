@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/json.h"
+#include "separation/separate.h"
+
+namespace spectrace {
+namespace {
+
+constexpr std::string_view kFillRule =
+    "below the horizon: nearest phi_d, then nearest theta_h; s_D drawn to s_F, s_F to s_sun where "
+    "undetermined";
+
+std::string_view text_of(CosineWeight weight) {
+  return weight == CosineWeight::kProduct ? "product: max(cos_i cos_o, eps)"
+                                          : "printed: max(cos_i, cos_o, eps)";
+}
+std::string_view spacing_of(const HalfDifferenceGrid& grid) {
+  return grid.quadratic_theta_h ? "quadratic" : "uniform";
+}
+
+/// Root mean square over the axis.
+double overall(const std::vector<double>& rms) {
+  if (rms.empty()) return 0;
+  double sum = 0;
+  for (double x : rms) sum += x * x;
+  return std::sqrt(sum / double(rms.size()));
+}
+
+double percent(std::size_t part, std::size_t whole) {
+  return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0;
+}
+
+void write_array(JsonWriter& json, std::string_view name, const std::vector<double>& values) {
+  json.key(name);
+  json.begin_array();
+  for (double x : values) json.value(x);
+  json.end_array();
+}
+
+void write_options(JsonWriter& json, const SeparationOptions& options) {
+  json.key("options");
+  json.begin_object();
+  json.member("theta_h", options.grid.n_theta_h);
+  json.member("theta_d", options.grid.n_theta_d);
+  json.member("phi_d", options.grid.n_phi_d);
+  json.member("theta_h_spacing", spacing_of(options.grid));
+  json.member("weight", options.weight == CosineWeight::kProduct ? "product" : "printed");
+  json.member("epsilon", options.epsilon);
+  json.member("eta_diffuse", options.eta_diffuse);
+  json.member("eta_specular", options.eta_specular);
+  json.member("starts", options.starts);
+  json.member("diffraction_prior", options.diffraction_prior);
+  json.end_object();
+}
+
+}  // namespace
+
+std::string SeparationReport::brief() const {
+  if (!usable) return verdict;
+  return fmt::format("{}; rms log residual sun {:.4f}, fresnel {:.4f}, diffraction {:.4f}; {:.1f} s", verdict,
+                     overall(rms_sun), overall(rms_fresnel), overall(rms_diffraction),
+                     seconds_table + seconds_step1 + seconds_step2 + seconds_step3);
+}
+
+std::string SeparationReport::full() const {
+  std::string text = fmt::format("{}\n", verdict);
+  const auto line = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<22}{}\n", name, value);
+  };
+  const auto cell_line = [&](std::string_view name, std::size_t n) {
+    line(name, fmt::format("{:>9} ({:.1f} %)", n, percent(n, cells)));
+  };
+  line("cells", fmt::format("{:>9}, theta_h {}", cells, spacing_of(options.grid)));
+  cell_line("  measured", measured);
+  cell_line("  extrapolated", extrapolated);
+  cell_line("  unmeasured", unmeasured);
+  cell_line("  below horizon", below_horizon);
+  line("negative values", fmt::format("{:>9} of the file, clamped to 0", negative_values));
+  line("fill rule", std::string(kFillRule));
+  line("weight", std::string(text_of(options.weight)));
+  if (!usable) return text;
+  line("analytic fit", fmt::format("alpha_d {:.4f}, rho_0 {:.4g}, F_0 {:.4f}, a {:.4f}", fit.albedo_d,
+                                   fit.rho_0, fit.f_0, fit.alpha));
+  line("step 1", fmt::format("cost {:.6g} -> {:.6g} in {} iterations, gradient {:.1e} per cell",
+                             step1_initial_cost, step1_final_cost, step1_iterations, step1_gradient_max));
+  line("step 2",
+       fmt::format("cost {:.6g}, specular share {:.2f} %, Lambert form costs {:.2f} % of the energy",
+                   step2_cost, 100 * specular_share, 100 * lambert_cost));
+  line("step 3", fmt::format("rms log residual: sun {:.4f}, fresnel {:.4f}, diffraction {:.4f}",
+                             overall(rms_sun), overall(rms_fresnel), overall(rms_diffraction)));
+  line("seconds", fmt::format("table {:.2f}, step 1 {:.2f}, step 2 {:.2f}, step 3 {:.2f}", seconds_table,
+                              seconds_step1, seconds_step2, seconds_step3));
+  return text;
+}
+
+std::string SeparationReport::json(bool with_timings) const {
+  JsonWriter json;
+  json.begin_object();
+  json.member("usable", usable);
+  json.member("verdict", verdict);
+  write_options(json, options);
+  json.member("fill_rule", kFillRule);
+  json.key("cells");
+  json.begin_object();
+  json.member("total", cells);
+  json.member("measured", measured);
+  json.member("extrapolated", extrapolated);
+  json.member("unmeasured", unmeasured);
+  json.member("below_horizon", below_horizon);
+  json.end_object();
+  json.member("negative_values", negative_values);
+  json.key("analytic_fit");
+  json.begin_object();
+  json.member("albedo_d", fit.albedo_d);
+  json.member("rho_0", fit.rho_0);
+  json.member("f_0", fit.f_0);
+  json.member("alpha", fit.alpha);
+  json.end_object();
+  json.member("step1_initial_cost", step1_initial_cost);
+  json.member("step1_final_cost", step1_final_cost);
+  json.member("step1_gradient_max", step1_gradient_max);
+  json.member("step1_iterations", step1_iterations);
+  json.member("step2_cost", step2_cost);
+  json.member("specular_share", specular_share);
+  json.member("lambert_cost", lambert_cost);
+  write_array(json, "rms_sun", rms_sun);
+  write_array(json, "rms_fresnel", rms_fresnel);
+  write_array(json, "rms_diffraction", rms_diffraction);
+  if (with_timings) {
+    json.key("seconds");
+    json.begin_object();
+    json.member("table", seconds_table);
+    json.member("step1", seconds_step1);
+    json.member("step2", seconds_step2);
+    json.member("step3", seconds_step3);
+    json.end_object();
+  }
+  json.end_object();
+  return json.text();
+}
+
+}  // namespace spectrace

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "separation/separate.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "core/base/error.h"
+#include "separation/analytic_fit.h"
+#include "separation/cell_table.h"
+#include "separation/parallel.h"
+#include "separation/spectral_fit.h"
+#include "separation/split.h"
+
+namespace spectrace {
+namespace {
+
+/// Runs `step` and returns how long it took [s].
+template <typename F>
+double seconds(const F& step) {
+  const auto start = std::chrono::steady_clock::now();
+  step();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void judge(SeparationReport& report, bool isotropic, bool converged) {
+  if (!isotropic) {
+    report.verdict = "unusable: the material is anisotropic, the method separates isotropic ones";
+  } else if (report.measured == 0) {
+    report.verdict = "unusable: no cell of the table was measured";
+  } else if (!converged) {
+    report.verdict = "unusable: step 1 did not converge from any start";
+  } else {
+    report.verdict = fmt::format("usable: fitted to {} measured cells", report.measured);
+    return;
+  }
+  report.usable = false;
+}
+
+SeparatedTables empty_tables(const MeasuredBrdf& measured, const HalfDifferenceGrid& grid) {
+  const std::size_t n = measured.axis().size();
+  SeparatedTables tables;
+  tables.grid = grid;
+  tables.axis = measured.axis();
+  tables.c_d.resize(n);
+  tables.s_sun.resize(n);
+  tables.rho_s.resize(grid.size());
+  tables.s_fresnel.resize(std::size_t(grid.n_theta_d) * n);
+  tables.s_diffraction.resize(grid.angular_size() * n);
+  return tables;
+}
+
+/// c_d = s_d alpha_d: the renderer's Lambert lobe.
+void store(SpectralFit fit, SplitResult split, SeparationResult& result) {
+  SeparatedTables& tables = result.tables;
+  for (std::size_t k = 0; k < fit.s_d.size(); ++k) {
+    tables.c_d[k] = static_cast<float>(double(fit.s_d[k]) * split.albedo_d);
+  }
+  tables.rho_s = std::move(split.rho_s);
+  tables.s_sun = std::move(fit.s_sun);
+  tables.s_fresnel = std::move(fit.s_fresnel);
+  tables.s_diffraction = std::move(fit.s_diffraction);
+  result.report.rms_sun = std::move(fit.rms_sun);
+  result.report.rms_fresnel = std::move(fit.rms_fresnel);
+  result.report.rms_diffraction = std::move(fit.rms_diffraction);
+}
+
+void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progress& progress,
+         SeparationResult& result) {
+  SeparationReport& report = result.report;
+  CellTable table;
+  progress.update("table", 0, 1);
+  report.seconds_table = seconds([&] { table = build_cell_table(measured, options); });
+  report.cells = table.counts.cells;
+  report.below_horizon = table.counts.below_horizon;
+  report.measured = table.counts.measured;
+  report.extrapolated = table.counts.extrapolated;
+  report.unmeasured = table.counts.unmeasured;
+
+  progress.update("analytic fit", 0, 1);
+  AnalyticSolution analytic;
+  report.seconds_step1 = seconds([&] { analytic = fit_analytic(table, options); });
+  report.fit = analytic.fit;
+  report.step1_initial_cost = analytic.initial_cost;
+  report.step1_final_cost = analytic.final_cost;
+  report.step1_gradient_max = analytic.gradient_max;
+  report.step1_iterations = analytic.iterations;
+  judge(report, measured.tables().is_isotropic(), analytic.converged);
+  if (!report.usable) return;
+
+  SplitResult split;
+  report.seconds_step2 = seconds([&] { split = split_lobes(table, analytic.fit, options); });
+  report.step2_cost = split.cost;
+  report.lambert_cost = split.lambert_cost;
+  report.specular_share = split.specular_share;
+
+  SpectralFit spectra;
+  report.seconds_step3 = seconds([&] { spectra = fit_spectra(measured, table, split, options, progress); });
+  store(std::move(spectra), std::move(split), result);
+}
+
+}  // namespace
+
+std::string SeparationOptions::problem() const {
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+  if (grid.n_theta_h < 2 || grid.n_theta_d < 2 || grid.n_phi_d < 2)
+    return "grid: each dimension must be at least 2";
+  if (grid.size() > std::size_t(1) << 28) return "grid: at most 2^28 cells";
+  if (!positive(epsilon)) return "epsilon must be > 0";
+  if (!positive(eta_diffuse)) return "eta_diffuse must be > 0";
+  if (!positive(eta_specular)) return "eta_specular must be > 0";
+  if (starts < 1) return "starts must be at least 1";
+  if (!(std::isfinite(diffraction_prior) && diffraction_prior >= 0)) return "diffraction_prior must be >= 0";
+  if (threads < 0) return "threads must be >= 0";
+  return {};
+}
+
+SeparationResult separate(const MeasuredBrdf& measured, const SeparationOptions& options,
+                          Progress& progress) {
+  SPECTRACE_CHECK(options.problem().empty());
+  SeparationResult result;
+  result.tables = empty_tables(measured, options.grid);
+  result.tables.source_name = measured.tables().description;
+  result.report.options = options;
+  result.report.negative_values = measured.tables().negative_values;
+  with_threads(options.threads, [&] { run(measured, options, progress, result); });
+  result.tables.report_json = result.report.json(false);
+  return result;
+}
+
+}  // namespace spectrace

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "separation/split.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "separation/analytic_fit.h"
+
+namespace spectrace {
+namespace {
+
+// A lobe with less of the energy than this is interpolation noise of a purely diffuse or purely specular
+// material (hard case H9): it becomes exactly 0, and the other lobe takes what it held.
+constexpr double kEmptyShare = 1e-3;
+
+struct Energies {
+  double total = 0, specular = 0, missing = 0;
+};
+
+/// Weighted by w as the fits are.
+Energies energies(const CellTable& table, double lambert) {
+  Energies e;
+  for (std::size_t i = 0; i < table.fitted(); ++i) {
+    const double w = double(table.weight[i]), mean = double(table.mean[i]);
+    e.total += w * mean;
+    e.specular += w * std::max(mean - lambert, 0.0);
+    e.missing += w * std::max(lambert - mean, 0.0);
+  }
+  return e;
+}
+
+double optimum_cost(const CellTable& table, const AnalyticFit& fit, const SeparationOptions& options) {
+  double cost = 0;
+  const double lambert = fit.albedo_d / std::numbers::pi;
+  for (int h = 0; h < table.grid.n_theta_h; ++h) {
+    const double cos_h = std::cos(table.grid.theta_h(h));
+    for (int d = 0; d < table.grid.n_theta_d; ++d) {
+      const double cos_d = std::cos(table.grid.theta_d(d));
+      const std::size_t group = std::size_t(h) * table.grid.n_theta_d + d;
+      for (std::size_t i = table.begin[group]; i < table.begin[group + 1]; ++i) {
+        const double mean = double(table.mean[i]);
+        const double ggx = ggx_value(fit, cos_h, cos_d, double(table.cos_i[i]), double(table.cos_o[i]));
+        const double x = split_cell(mean, lambert, ggx, options.eta_diffuse, options.eta_specular);
+        cost += double(table.weight[i]) * (options.eta_diffuse * std::abs(x - lambert) +
+                                           options.eta_specular * std::abs(mean - x - ggx));
+      }
+    }
+  }
+  return cost;
+}
+
+/// Below the horizon: the nearest node in phi_d, which is never far, because at phi_d = 90 degrees both
+/// directions of a pair stand at cosθh cosθd > 0.
+void fill_below_horizon(const HalfDifferenceGrid& grid, std::vector<float>& rho_s) {
+  const int n = grid.n_phi_d;
+  for (std::size_t group = 0; group < grid.angular_size(); ++group) {
+    float* row = &rho_s[group * n];
+    std::vector<float> filled(row, row + n);
+    for (int p = 0; p < n; ++p) {
+      for (int step = 1; filled[p] < 0 && step <= n / 2; ++step) {
+        const float before = row[(p + n - step) % n], after = row[(p + step) % n];
+        if (before >= 0 && after >= 0) {
+          filled[p] = (before + after) / 2;
+        } else if (before >= 0 || after >= 0) {
+          filled[p] = std::max(before, after);
+        }
+      }
+    }
+    std::copy(filled.begin(), filled.end(), row);
+  }
+}
+
+/// Rows still without any value take the nearest theta_h.
+void fill_empty_rows(const HalfDifferenceGrid& grid, std::vector<float>& rho_s) {
+  for (int d = 0; d < grid.n_theta_d; ++d) {
+    for (int p = 0; p < grid.n_phi_d; ++p) {
+      float last = 0;
+      for (int h = 0; h < grid.n_theta_h; ++h) {
+        float& value = rho_s[grid.index(h, d, p)];
+        if (value < 0) value = last;
+        last = value;
+      }
+    }
+  }
+}
+
+/// phi_d means nothing at theta_h = 0 and at theta_d = 0: one value there, so that lookups are continuous and
+/// independent of azimuth (hard case H5).
+void average_poles(const HalfDifferenceGrid& grid, std::vector<float>& rho_s) {
+  const auto average = [&](std::size_t group) {
+    float* row = &rho_s[group * grid.n_phi_d];
+    double sum = 0;
+    for (int p = 0; p < grid.n_phi_d; ++p) sum += double(row[p]);
+    std::fill(row, row + grid.n_phi_d, static_cast<float>(sum / grid.n_phi_d));
+  };
+  for (int d = 0; d < grid.n_theta_d; ++d) average(std::size_t(d));
+  for (int h = 1; h < grid.n_theta_h; ++h) average(std::size_t(h) * grid.n_theta_d);
+}
+
+/// mean_q less the Lambert lobe, clamped: the specular table as the renderer needs it.
+std::vector<float> specular_table(const CellTable& table, double lambert) {
+  const HalfDifferenceGrid& grid = table.grid;
+  std::vector<float> rho_s(grid.size());
+  for (int h = 0; h < grid.n_theta_h; ++h) {
+    for (int d = 0; d < grid.n_theta_d; ++d) {
+      // cosθi + cosθo = 2 cosθh cosθd, whatever phi_d
+      const double lambert_q = lambert * 2 * std::cos(grid.theta_h(h)) * std::cos(grid.theta_d(d));
+      for (int p = 0; p < grid.n_phi_d; ++p) {
+        const std::size_t cell = grid.index(h, d, p);
+        const float mean = table.mean_q[cell];
+        rho_s[cell] = mean < 0 ? -1.0F : static_cast<float>(std::max(double(mean) - lambert_q, 0.0));
+      }
+    }
+  }
+  fill_below_horizon(grid, rho_s);
+  fill_empty_rows(grid, rho_s);
+  average_poles(grid, rho_s);
+  return rho_s;
+}
+
+}  // namespace
+
+double split_cell(double mean, double diffuse, double specular, double eta_diffuse, double eta_specular) {
+  const double optimum = eta_diffuse >= eta_specular ? diffuse : mean - specular;
+  return std::clamp(optimum, 0.0, mean);
+}
+
+SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, const SeparationOptions& options) {
+  SplitResult result;
+  result.cost = optimum_cost(table, fit, options);
+  result.albedo_d = fit.albedo_d;
+  Energies e = energies(table, result.albedo_d / std::numbers::pi);
+  if (e.total > 0 && (e.total - e.specular) < kEmptyShare * e.total) {
+    result.albedo_d = 0;
+    e = energies(table, 0);
+  }
+  if (e.total <= 0 || e.specular < kEmptyShare * e.total) {
+    result.rho_s.assign(table.grid.size(), 0.0F);
+    return result;
+  }
+  result.rho_s = specular_table(table, result.albedo_d / std::numbers::pi);
+  result.specular_share = e.specular / e.total;
+  result.lambert_cost = e.missing / e.total;
+  return result;
+}
+
+}  // namespace spectrace

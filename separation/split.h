@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Step 2 (sec. 4.3): the achromatic BRDF split into its diffuse and specular part, eqs. 16-17.
+#pragma once
+
+#include <vector>
+
+#include "separation/cell_table.h"
+#include "separation/separate.h"
+
+namespace spectrace {
+
+/// The x in [0, mean] that minimises eta_d |x - diffuse| + eta_s |mean - x - specular|: one cell of eq. 16,
+/// whose weight w multiplies both terms and drops out. A weighted median, hence exact; of equal minima the
+/// one nearest `diffuse`. All arguments >= 0.
+double split_cell(double mean, double diffuse, double specular, double eta_diffuse, double eta_specular);
+
+struct SplitResult {
+  /// [theta_h][theta_d][phi_d] as SeparatedTables::rho_s: ρ_s (cosθi + cosθo), >= 0, below the horizon
+  /// filled.
+  std::vector<float> rho_s;
+  double albedo_d = 0;        ///< of the Lambert lobe, alpha_d or exactly 0
+  double cost = 0;            ///< eq. 16 at the paper's optimum
+  double lambert_cost = 0;    ///< SeparationReport::lambert_cost
+  double specular_share = 0;  ///< of the energy Σ w ρ over the fitted cells
+};
+SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, const SeparationOptions& options);
+
+}  // namespace spectrace
