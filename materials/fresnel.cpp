@@ -1,30 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "materials/fresnel.h"
 
-#include <complex>
-
 #include "core/math/math.h"
 
 namespace spectrace {
 
 namespace {
 
-using Complex = std::complex<Float>;
-
-/// Amplitude reflected between two media, for both polarisations. `q` = sqrt(n² - sin²θ0): the normal part of
-/// the wave vector over that of vacuum. Born & Wolf 1999, sec. 1.5.2, eqs. 21-21a, with cosθ = q / n.
-struct Amplitudes {
-  Complex s, p;
+/// Products and quotients alone, without std::complex' care for infinities, which costs four times as much.
+struct Complex {
+  Float re = 0, im = 0;
 };
-Amplitudes interface_amplitudes(Complex n2_before, Complex q_before, Complex n2_after, Complex q_after) {
-  return {(q_before - q_after) / (q_before + q_after),
-          (n2_after * q_before - n2_before * q_after) / (n2_after * q_before + n2_before * q_after)};
+Complex operator*(Float s, Complex z) { return {s * z.re, s * z.im}; }
+Complex operator+(Complex a, Complex b) { return {a.re + b.re, a.im + b.im}; }
+Complex operator-(Complex a, Complex b) { return {a.re - b.re, a.im - b.im}; }
+Complex operator/(Complex a, Complex b) {
+  const Float norm = sqr(b.re) + sqr(b.im);
+  return {(a.re * b.re + a.im * b.im) / norm, (a.im * b.re - a.re * b.im) / norm};
 }
 
-/// Airy's sum over the waves reflected inside the film, for one polarisation. Born & Wolf 1999, sec. 7.6,
-/// eq. 7.
-Float film_reflectance(Complex top, Complex bottom, Complex round_trip) {
-  return std::norm((top + bottom * round_trip) / (Float(1) + top * bottom * round_trip));
+/// The root with positive real and imaginary parts, `z.im` >= 0: waves that fade with depth.
+Complex complex_sqrt(Complex z) {
+  const Float norm = std::sqrt(sqr(z.re) + sqr(z.im));
+  const Float larger = std::sqrt((norm + std::abs(z.re)) / 2);
+  const Float smaller = safe_div(z.im, 2 * larger);
+  return z.re >= 0 ? Complex{larger, smaller} : Complex{smaller, larger};
+}
+
+/// Airy's sum over the waves reflected inside a transparent film, for one polarisation: `top` is the
+/// amplitude reflected at its upper face, `bottom` at its lower. Born & Wolf 1999, sec. 7.6, eq. 7, squared.
+Float film_reflectance(Float top, Complex bottom, Float cos_phase, Float sin_phase) {
+  const Float top2 = sqr(top), bottom2 = sqr(bottom.re) + sqr(bottom.im);
+  const Float interference = 2 * top * (bottom.re * cos_phase - bottom.im * sin_phase);
+  return (top2 + bottom2 + interference) / (1 + top2 * bottom2 + interference);
 }
 
 }  // namespace
@@ -63,13 +71,22 @@ Float fresnel_thin_film(Float cos_i, Float lambda_nm, Float film_eta, Float thic
                         Float base_k) {
   if (cos_i <= 0) return 1;
   const Float sin2 = std::max(1 - sqr(cos_i), Float(0));
-  const Complex n2_film = sqr(film_eta), n2_base = sqr(Complex(base_eta, base_k));
-  // The principal root has a positive imaginary part where there is one: waves that fade with depth.
-  const Complex q_film = std::sqrt(n2_film - sin2), q_base = std::sqrt(n2_base - sin2);
-  const Amplitudes top = interface_amplitudes(1, cos_i, n2_film, q_film);
-  const Amplitudes bottom = interface_amplitudes(n2_film, q_film, n2_base, q_base);
-  const Complex round_trip = std::exp(Complex(0, 4 * kPi * thickness_nm / lambda_nm) * q_film);
-  return (film_reflectance(top.s, bottom.s, round_trip) + film_reflectance(top.p, bottom.p, round_trip)) / 2;
+  const Float n2_film = sqr(film_eta);
+  const Complex n2_base{sqr(base_eta) - sqr(base_k), 2 * base_eta * base_k};
+  // q = n cosθ = sqrt(n² - sin²θ0): the normal part of the wave vector over that of vacuum. With it the
+  // amplitudes of Born & Wolf 1999, sec. 1.5.2, eqs. 21-21a hold for complex indices as well.
+  const Float q_film = std::sqrt(n2_film - sin2);
+  const Complex q_base = complex_sqrt({n2_base.re - sin2, n2_base.im});
+  const Float top_s = (cos_i - q_film) / (cos_i + q_film);
+  const Float top_p = (n2_film * cos_i - q_film) / (n2_film * cos_i + q_film);
+  const Complex film{q_film, 0};
+  const Complex bottom_s = (film - q_base) / (film + q_base);
+  const Complex bottom_p = (q_film * n2_base - n2_film * q_base) / (q_film * n2_base + n2_film * q_base);
+  const Float phase = 4 * kPi * thickness_nm / lambda_nm * q_film;  // there and back
+  const Float cos_phase = std::cos(phase), sin_phase = std::sin(phase);
+  return (film_reflectance(top_s, bottom_s, cos_phase, sin_phase) +
+          film_reflectance(top_p, bottom_p, cos_phase, sin_phase)) /
+         2;
 }
 
 SampledSpectrum ConductorFresnel::reflectance(Float cos_i, const SampledWavelengths& lambda) const {

@@ -24,13 +24,14 @@ namespace spectrace {
 [[nodiscard]] SampledSpectrum fresnel_schlick(Float cos_i, const SampledSpectrum& f0);
 
 /// A transparent film in vacuum over η + ik (k = 0: a dielectric): Airy's sum of all internal reflections,
-/// Born & Wolf 1999, sec. 7.6 and 14.4. `thickness_nm` >= 0; 0 gives the bare interface.
+/// Born & Wolf 1999, sec. 7.6 and 14.4. `film_eta` >= 1; `thickness_nm` >= 0, where 0 gives the bare
+/// interface.
 [[nodiscard]] Float fresnel_thin_film(Float cos_i, Float lambda_nm, Float film_eta, Float thickness_nm,
                                       Float base_eta, Float base_k);
 
 /// A layer that shows interference colours.
 struct ThinFilm {
-  Spectrum eta;            ///< > 0, real
+  Spectrum eta;            ///< >= 1, real
   Float thickness_nm = 0;  ///< >= 0
 };
 

@@ -24,22 +24,25 @@ SampledSpectrum scaled_albedo(const Glossy& g, const ShadingPoint& at) {
 
 }  // namespace
 
-Float Glossy::specular_probability(const SampledSpectrum& diffuse_albedo, Vec3 wo,
-                                   const ShadingPoint& at) const {
+Glossy::Mix Glossy::mix(Vec3 wo, const ShadingPoint& at) const {
+  const SampledSpectrum albedo = scaled_albedo(*this, at);
+  const Float diffuse = albedo.average();
   const Float specular = specular_scale * spectrace::reflectance(fresnel, wo.z, at.lambda).average();
-  return safe_div(specular, specular + diffuse_albedo.average());
+  return {.diffuse_albedo = albedo,
+          .specular_probability = safe_div(specular, specular + diffuse),
+          .is_empty = specular == 0 && diffuse == 0};
+}
+
+BsdfValue Glossy::evaluate(const Mix& mix, Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  if (wi.z <= 0 || mix.is_empty) return {};
+  const Ggx::Reflection r = ggx.reflect(wo, wi);
+  const Parts p = parts(*this, mix.diffuse_albedo, r, wi, at);
+  return {p.diffuse + p.specular, lerp(wi.z * kInvPi, r.pdf, mix.specular_probability)};
 }
 
 BsdfValue Glossy::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  const SampledSpectrum diffuse_albedo = scaled_albedo(*this, at);
-  const Ggx::Reflection r = ggx.reflect(wo, wi);
-  const Parts p = parts(*this, diffuse_albedo, r, wi, at);
-  const Float specular = specular_probability(diffuse_albedo, wo, at);
-  const SampledSpectrum total = p.diffuse + p.specular;
-  // Where neither lobe reflects, none is ever chosen.
-  if (specular == 0 && diffuse_albedo.is_zero()) return {};
-  return {total, specular * r.pdf + (1 - specular) * (wi.z * kInvPi)};
+  return evaluate(mix(wo, at), wo, wi, at);
 }
 
 LobeValues Glossy::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
@@ -50,10 +53,11 @@ LobeValues Glossy::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) cons
 
 std::optional<BsdfSample> Glossy::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
   if (wo.z <= 0) return std::nullopt;
-  const Float specular = specular_probability(scaled_albedo(*this, at), wo, at);
+  const Mix m = mix(wo, at);
+  const Float specular = m.specular_probability;
   const bool choose_specular = specular > 0 && (specular == 1 || u.lobe < specular);
   const Vec3 wi = choose_specular ? ggx.sample(wo, u.direction) : sample_cosine_hemisphere(u.direction);
-  const BsdfValue value = evaluate(wo, wi, at);
+  const BsdfValue value = evaluate(m, wo, wi, at);
   if (value.pdf <= 0) return std::nullopt;
   return BsdfSample{.wi = wi,
                     .weight = value.value_cos / value.pdf,

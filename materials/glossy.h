@@ -25,8 +25,14 @@ struct Glossy {
   [[nodiscard]] bool is_delta() const { return false; }
 
  private:
-  [[nodiscard]] Float specular_probability(const SampledSpectrum& diffuse_albedo, Vec3 wo,
-                                           const ShadingPoint& at) const;
+  /// What depends on wo alone: found once a sample.
+  struct Mix {
+    SampledSpectrum diffuse_albedo;
+    Float specular_probability = 0;
+    bool is_empty = false;  ///< neither lobe reflects: none is ever chosen
+  };
+  [[nodiscard]] Mix mix(Vec3 wo, const ShadingPoint& at) const;
+  [[nodiscard]] BsdfValue evaluate(const Mix& mix, Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
 };
 
 static_assert(Bsdf<Glossy>);

@@ -44,10 +44,12 @@ struct SeparatedDesc {
 struct MaterialDesc {
   std::string name;
   std::string where;  ///< of the JSON object, for messages at build time
-  std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, MeasuredDesc, SeparatedDesc> kind;
+  std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, MeasuredDesc, SeparatedDesc>
+      kind;
 };
 
-/// One object {"type": ..., "name": ..., ...}; problems are recorded in the document. Forms: docs/scene-format.md.
+/// One object {"type": ..., "name": ..., ...}; problems are recorded in the document. Forms:
+/// docs/scene-format.md.
 MaterialDesc parse_material(const JsonValue& json);
 /// A file that holds one such object; throws InputError.
 MaterialDesc load_material(const std::filesystem::path& file);

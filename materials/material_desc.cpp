@@ -11,15 +11,17 @@ namespace spectrace {
 namespace {
 
 constexpr NumberRange kAlphaRange{.min = kMinAlpha, .max = 1};
+// The film lies in air: light always enters it.
+constexpr NumberRange kFilmEta{.min = 1};
 // Beyond 100 µm interference is finer than any wavelength step of this program.
 constexpr NumberRange kFilmThickness{.min = 0, .max = 1e5};
 
-/// A real index of refraction or an extinction; `positive` refuses 0 as well as negative values.
-Spectrum parse_optical_constant(const JsonValue& json, bool positive) {
+/// A refractive index or an extinction whose values lie in `range`.
+Spectrum parse_optical_constant(const JsonValue& json, NumberRange range) {
   Spectrum s = parse_spectrum(json, SpectrumRole::kUnbounded, Spectrum::constant(1));
-  // -min over the widest range any scene may ask for.
+  // The least value over the widest range of wavelengths a scene may ask for.
   const Float minimum = -s.scaled(-1).max_over({.min_nm = 200, .max_nm = 2000});
-  if (minimum < 0 || (positive && minimum == 0)) json.error(positive ? "must be > 0" : "must be >= 0");
+  if (!range.contains(minimum)) json.error("must lie in " + range.text() + " at every wavelength");
   return s;
 }
 
@@ -27,8 +29,8 @@ Spectrum parse_optical_constant(const JsonValue& json, bool positive) {
 void parse_index(const JsonValue& json, ConductorFresnel& fresnel) {
   const JsonValue file = json.get("metal_file");
   if (!file.exists()) {
-    fresnel.eta = parse_optical_constant(json.require("eta"), true);
-    fresnel.k = parse_optical_constant(json.require("k"), false);
+    fresnel.eta = parse_optical_constant(json.require("eta"), kPositive);
+    fresnel.k = parse_optical_constant(json.require("k"), kNonNegative);
     return;
   }
   for (const char* key : {"eta", "k"}) {
@@ -48,7 +50,7 @@ void parse_index(const JsonValue& json, ConductorFresnel& fresnel) {
 std::optional<ThinFilm> parse_thin_film(const JsonValue& json) {
   if (!json.exists()) return std::nullopt;
   ThinFilm film;
-  film.eta = parse_optical_constant(json.require("eta"), true);
+  film.eta = parse_optical_constant(json.require("eta"), kFilmEta);
   film.thickness_nm = static_cast<Float>(json.require("thickness_nm").number(0, kFilmThickness));
   json.reject_unknown_keys();
   return film;
@@ -116,7 +118,7 @@ SeparatedDesc parse_separated(const JsonValue& json) {
 decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string& type) {
   if (type == "conductor") return parse_conductor(json);
   if (type == "dielectric") {
-    return Dielectric{parse_optical_constant(json.require("eta"), true)};
+    return Dielectric{parse_optical_constant(json.require("eta"), kPositive)};
   }
   if (type == "glossy") return parse_glossy(json);
   if (type == "measured") return MeasuredDesc{json.require("file").path()};
