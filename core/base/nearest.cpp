@@ -11,6 +11,7 @@ namespace {
 
 // Longer words are no typing errors of a key; the cap bounds the time a hostile file can take.
 constexpr std::size_t kMaxLength = 64;
+constexpr std::size_t kShortestBeginning = 3;  // letters that say which name is meant
 
 std::string lower(std::string_view text) {
   std::string r(text);
@@ -53,7 +54,10 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
     if (name.size() > kMaxLength) {
       continue;
     }
-    const std::size_t n = edits(wanted, lower(name));
+    const std::string candidate = lower(name);
+    // "fov" is no typing error of "fov_deg", but what is meant is plain.
+    const bool is_begun = wanted.size() >= kShortestBeginning && candidate.starts_with(wanted);
+    const std::size_t n = is_begun ? 1 : edits(wanted, candidate);
     if (n <= std::max<std::size_t>(2, name.size() / 3) && n < name.size() && (!best || n < fewest)) {
       best = name;
       fewest = n;

@@ -15,13 +15,18 @@ TEST(NearestName, FindsTypingErrors) {
   EXPECT_EQ(nearest_name("relfectance", kKeys), "reflectance");
   EXPECT_EQ(nearest_name("MAX_DEPTH", kKeys), "max_depth");
   EXPECT_EQ(nearest_name("nmae", kKeys), "name");
-  EXPECT_EQ(nearest_name("fov", {kKeys.data() + 5, 1}), std::nullopt);  // four letters of seven are missing
 }
 
 TEST(NearestName, TakesTheOneWithTheFewestEdits) {
   const std::vector<std::string> names{"wall_left", "wall_right", "wall"};
   EXPECT_EQ(nearest_name("wall_rigth", names), "wall_right");
   EXPECT_EQ(nearest_name("walls", names), "wall");
+}
+
+TEST(NearestName, FindsNamesThatWereOnlyBegun) {
+  EXPECT_EQ(nearest_name("fov", kKeys), "fov_deg");
+  EXPECT_EQ(nearest_name("refl", kKeys), "reflectance");
+  EXPECT_EQ(nearest_name("fo", kKeys), std::nullopt);
 }
 
 TEST(NearestName, SaysNothingWhereNothingIsNear) {
