@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the spectrace program as a user would.
+// Runs the spectrace program as a user would: own process, captured streams, exit code.
 #pragma once
 
-#include <sys/wait.h>
-
-#include <cstdlib>
-#include <initializer_list>
+#include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "tests/support/temporary_folder.h"
 
@@ -14,24 +13,24 @@ namespace spectrace::test {
 
 struct ProgramResult {
   int exit_code = -1;  ///< -1 where it died by a signal
+  int signal = 0;      ///< 0 where it exited by itself
   std::string output, errors;
 
   [[nodiscard]] bool says(std::string_view text) const { return output.find(text) != std::string::npos; }
   [[nodiscard]] bool complains(std::string_view text) const { return errors.find(text) != std::string::npos; }
+  [[nodiscard]] std::vector<std::string> error_lines() const;
 };
 
-/// Each argument reaches the program as it is.
-inline ProgramResult run_spectrace(std::initializer_list<std::string> arguments) {
-  const TemporaryFolder folder;
-  std::string command = "'" SPECTRACE_BINARY "'";
-  for (const std::string& argument : arguments) {
-    command += " '";
-    for (const char c : argument) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    command += "'";
-  }
-  command += " >'" + (folder / "out").string() + "' 2>'" + (folder / "err").string() + "' </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+/// Each argument reaches the program as it is; standard input is empty. `folder`, where given, is where it
+/// runs; `output_to` receives standard output instead of the result. Throws std::system_error where the
+/// program cannot be started.
+ProgramResult run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                          const std::filesystem::path& folder = {},
+                          const std::filesystem::path& output_to = {});
+
+inline ProgramResult run_spectrace(const std::vector<std::string>& arguments,
+                                   const std::filesystem::path& folder = {}) {
+  return run_program(SPECTRACE_BINARY, arguments, folder);
 }
 
 }  // namespace spectrace::test

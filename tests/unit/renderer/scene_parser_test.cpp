@@ -167,7 +167,7 @@ TEST(SceneParser, NamesFilesThatAreNotThere) {
   expect_problem(R"("shapes": [{"type": "mesh", "material": "clay", "file": "meshes"}])", "there is no file");
   EXPECT_EQ(problems(R"({"camera": {"origin": [0, 0, 1], "target": [0, 0, 0]},
                          "materials": [{"name": "m", "type": "measured", "file": "none.bsdf"}]})"),
-            std::vector<std::string>{"2:83: /materials/0/file: there is no file \"" +
+            std::vector<std::string>{"2:82: /materials/0/file: there is no file \"" +
                                      (kScenes / "none.bsdf").string() + "\""});
 }
 
@@ -208,7 +208,7 @@ TEST(SceneParser, RefusesCamerasThatCannotLook) {
   const auto camera = [](const std::string& json) { return problems(R"({"camera": )" + json + "}"); };
   EXPECT_EQ(camera(R"({"origin": [1, 2, 3], "target": [1, 2, 3]})"),
             std::vector<std::string>{
-                "1:45: /camera/target: is the same point as the origin: the camera has nowhere to look"});
+                "1:44: /camera/target: is the same point as the origin: the camera has nowhere to look"});
   EXPECT_EQ(
       camera(R"({"origin": [0, 0, 0], "target": [0, 5, 0]})"),
       std::vector<std::string>{R"(1:12: /camera: "up" is parallel to the direction from origin to target)"});
