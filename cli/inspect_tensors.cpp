@@ -143,7 +143,7 @@ InspectSection separated_summary(const SeparatedTables& tables) {
   section.add("theta_h_nodes", tables.grid.n_theta_h);
   section.add("theta_d_nodes", tables.grid.n_theta_d);
   section.add("phi_d_nodes", tables.grid.n_phi_d);
-  section.add("theta_h_spacing", tables.grid.quadratic_theta_h ? "quadratic" : "linear");
+  section.add("theta_h_spacing", tables.grid.quadratic_theta_h ? "quadratic" : "uniform");
   add_axis(section, tables.axis);
   std::string models = tables.s_sun.empty() ? "" : "sun ";
   models += tables.s_fresnel.empty() ? "" : "fresnel ";

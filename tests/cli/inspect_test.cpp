@@ -6,6 +6,7 @@
 
 #include "core/base/json.h"
 #include "core/image/image.h"
+#include "materials/separated_tables.h"
 #include "tests/support/run_program.h"
 #include "tests/support/test_data.h"
 
@@ -68,6 +69,32 @@ TEST(Inspect, TellsWhatAMeasurementHoldsAndLacks) {
     EXPECT_NE(field.require("unit").string(), "");
   }
   EXPECT_TRUE(has_spectra);
+  document.throw_if_wrong();
+}
+
+TEST(Inspect, TellsWhatASeparatedMaterialHolds) {
+  const TemporaryFolder folder;
+  SeparatedTables tables;
+  tables.grid = {.n_theta_h = 2, .n_theta_d = 3, .n_phi_d = 4};
+  tables.axis = SpectralAxis::wavelengths({400, 500});
+  tables.c_d = {0.25f, 0.75f};
+  tables.rho_s.assign(tables.grid.size(), 3);
+  tables.s_sun = {1, 1};
+  tables.s_fresnel.assign(3 * 2, 1);
+  tables.s_diffraction.assign(2 * 3 * 2, 1);
+  tables.source_name = "paint.bsdf";
+  tables.source_sha256 = std::string(64, 'a');
+  tables.report_json = "{\"usable\": true}";
+  separated_to_tensors(tables).write(folder / "f.sep");
+  JsonDocument document = inspect_json(folder / "f.sep");
+  const JsonValue material = document.root().require("separated_material");
+  EXPECT_EQ(material.require("source").string(), "paint.bsdf");
+  EXPECT_EQ(material.require("theta_d_nodes").integer(0, 0, 99), 3);
+  EXPECT_EQ(material.require("models").string(), "sun fresnel diffraction");
+  EXPECT_EQ(material.require("last_nm").number(0), 500);
+  EXPECT_EQ(material.require("diffuse_albedo_mean").number(0), 0.5);
+  EXPECT_EQ(material.require("specular_table_max_per_sr").number(0), 3);
+  EXPECT_NE(material.require("report").string().find("usable"), std::string::npos);
   document.throw_if_wrong();
 }
 
