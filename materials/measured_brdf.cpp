@@ -276,6 +276,7 @@ const float* MeasuredBrdf::spectrum(std::uint32_t row) const {
 
 const SpectralAxis& MeasuredBrdf::axis() const { return data_->tables.axis; }
 
+float MeasuredBrdf::last_measured_theta_i() const { return data_->last_measured_theta_i; }
 const MeasuredTables& MeasuredBrdf::tables() const { return data_->tables; }
 
 }  // namespace spectrace

@@ -38,6 +38,8 @@ class MeasuredBrdf {
   /// The `axis().size()` values of one row.
   [[nodiscard]] const float* spectrum(std::uint32_t row) const;
   [[nodiscard]] const SpectralAxis& axis() const;
+  /// MeasuredTables::last_measured_theta_i() of the whole tables [rad]: wo beyond it is extrapolated.
+  [[nodiscard]] float last_measured_theta_i() const;
   [[nodiscard]] const MeasuredTables& tables() const;  ///< with empty `spectra`: they live re-ordered in here
 
  private:

@@ -36,6 +36,8 @@ Film::Film(int width, int height) : width_(width), height_(height), pixels_(std:
 
 void Film::add(int x, int y, const PathValue& value) {
   Pixel& pixel = pixels_[std::size_t(y) * width_ + x];
+  pixel.measured += value.measured;
+  pixel.extrapolated += value.extrapolated;
   if (!value.valid) {
     ++pixel.invalid;
     return;
@@ -79,6 +81,15 @@ std::uint64_t Film::invalid_samples() const {
     total += pixel.invalid;
   }
   return total;
+}
+
+double Film::extrapolated_share() const {
+  std::uint64_t measured = 0, extrapolated = 0;
+  for (const Pixel& pixel : pixels_) {
+    measured += pixel.measured;
+    extrapolated += pixel.extrapolated;
+  }
+  return measured > 0 ? double(extrapolated) / double(measured) : 0;
 }
 
 }  // namespace spectrace

@@ -23,6 +23,8 @@ struct LaneSums {
 struct PathValue {
   std::array<Xyz, kLayerCount> xyz{};
   bool valid = true;  ///< all of it finite and >= 0
+  /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
+  std::uint32_t measured = 0, extrapolated = 0;
 };
 
 /// How much each lane of a path adds to X, Y and Z.
@@ -49,13 +51,15 @@ class Film {
   /// Channels of RenderResult::image; without `layers` R, G, B and diagnostics.invalid alone.
   [[nodiscard]] Image resolve(bool layers) const;
   [[nodiscard]] std::uint64_t invalid_samples() const;
+  /// Of all vertices on measured BRDFs; 0 where there are none.
+  [[nodiscard]] double extrapolated_share() const;
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
  private:
   struct Pixel {
     std::array<Xyz, kLayerCount> sum{};
-    std::uint64_t valid = 0, invalid = 0;
+    std::uint64_t valid = 0, invalid = 0, measured = 0, extrapolated = 0;
   };
   int width_, height_;
   std::vector<Pixel> pixels_;

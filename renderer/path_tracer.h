@@ -227,6 +227,10 @@ class PathTracer {
   /// Next-event estimation and the next ray. False: the path ends.
   bool scatter(const SurfacePoint& point, Ray& ray) {
     const Vertex vertex = make_vertex(point, -ray.direction);
+    if (const Float last = scene_.last_measured_cosine[point.material]; last > 0) {
+      ++value_.measured;
+      value_.extrapolated += vertex.wo.z < last ? 1 : 0;
+    }
     bool only_delta = false;
     if constexpr (kFeatures.delta_lobes) only_delta = is_delta(vertex.material);
     if (!only_delta && scene_.integrator.next_event) sample_lights(vertex);

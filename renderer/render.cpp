@@ -106,6 +106,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
       .effects_skipped = std::move(effects.skipped),
       .paths = std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(options.spp),
       .invalid_samples = film.invalid_samples(),
+      .extrapolated_share = film.extrapolated_share(),
       .seconds = elapsed.count(),
       .threads = threads};
   return result;
@@ -132,6 +133,7 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
       {"spectrace:effectsUsed", join(report.effects_used)},
       {"spectrace:effectsSkipped", join(report.effects_skipped)},
       {"spectrace:invalidSamples", std::int64_t(report.invalid_samples)},
+      {"spectrace:extrapolatedShare", report.extrapolated_share},
   };
 }
 

@@ -27,6 +27,7 @@ struct RenderReport {
   std::vector<std::string> effects_used,
       effects_skipped;                           ///< "environment", "dispersion: no dispersive material"
   std::uint64_t paths = 0, invalid_samples = 0;  ///< non-finite or negative radiance: dropped
+  double extrapolated_share = 0;  ///< of path vertices on measured BRDFs: seen from beyond what was measured
   double seconds = 0;
   int threads = 0;
 };

@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "renderer/scene_shapes.h"
@@ -39,6 +42,13 @@ std::string digest_of(const MaterialDesc& material) {
     file = &separated->file;
   }
   return file == nullptr ? "" : fmt::format("{}: {}", material.name, sha256_hex(read_file(*file)));
+}
+
+Float last_measured_cosine(const Material& material) {
+  const auto* measured = std::get_if<MeasuredBrdf>(&material);
+  return measured == nullptr
+             ? 0
+             : std::max(Float(0), std::cos(Float(measured->last_measured_theta_i())));
 }
 
 Environment build_environment(const EnvironmentDesc& light) {
@@ -80,9 +90,11 @@ DistantLights build_lights(const SceneDesc& scene) {
 Scene build_scene(const SceneDesc& description, Progress& progress) {
   check_camera(description);
   std::vector<Material> materials;
+  std::vector<Float> measured_cosines;
   std::vector<std::string> digests;
   for (const MaterialDesc& material : description.materials) {
     materials.push_back(build_material(material));
+    measured_cosines.push_back(last_measured_cosine(materials.back()));
     if (std::string digest = digest_of(material); !digest.empty()) {
       digests.push_back(std::move(digest));
     }
@@ -106,6 +118,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
       .spp = description.spp,
       .seed = description.seed,
       .materials = std::move(materials),
+      .last_measured_cosine = std::move(measured_cosines),
       .geometry = std::move(shapes.geometry),
       .lights = Lights(std::move(shapes.area_lights), shapes.light_groups, std::move(shapes.emissions),
                        std::move(distant.delta), std::move(distant.environment), wavelengths, radius),

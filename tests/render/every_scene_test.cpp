@@ -92,6 +92,16 @@ TEST_P(EveryScene, BeautyAloneHasTheSameBits) {
   }
 }
 
+TEST_P(EveryScene, ExtrapolationIsCountedWhereAMeasurementEnds) {
+  const double share = render(scene_, {.spp = 4}, progress_).report.extrapolated_share;
+  if (GetParam().name == "measured ball") {
+    EXPECT_GT(share, 0);  // the ball's rim
+    EXPECT_LT(share, 0.5);
+  } else {
+    EXPECT_EQ(share, 0);
+  }
+}
+
 TEST_P(EveryScene, SeedsChangeTheNoise) {
   if (GetParam().name == "empty") return;
   EXPECT_FALSE(same_bits(render_with({.spp = 1}), render_with({.spp = 1, .seed = 1})));

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/scene_zoo.h"
 
+#include <filesystem>
+
+#include "materials/measured_tables.h"
 #include "tests/support/render_scenes.h"
+#include "tests/support/synthetic_measured.h"
 
 namespace spectrace::test {
 
@@ -80,6 +84,13 @@ SceneDesc instance_scene() {
   return scene;
 }
 
+/// A measured file of a formula, anisotropic, turned by the tangents it meets.
+MaterialDesc measured(const std::string& name) {
+  const auto file = std::filesystem::temp_directory_path() / "spectrace_scene_zoo.bsdf";
+  measured_to_tensors(make_measured({.isotropic = false})).write(file);
+  return {.name = name, .where = "", .kind = MeasuredDesc{file}};
+}
+
 }  // namespace
 
 std::vector<NamedScene> scene_zoo() {
@@ -115,6 +126,9 @@ std::vector<NamedScene> scene_zoo() {
       {"dispersing glass", ball_scene(glass("ball", kBk7), glossy("floor", Spectrum::constant(Float(0.5))))});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.push_back({"instances", instance_scene()});
+  zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
   return zoo;
 }
 

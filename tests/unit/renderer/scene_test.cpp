@@ -102,9 +102,10 @@ TEST(Provenance, SaysWhatWentIn) {
   EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:sampleRange")), "0:3");
   EXPECT_EQ(std::get<double>(metadata.at("spectrace:lambdaMinNm")), 400);
   EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:kernel")), "box");
-  for (const char* key : {"spectrace:version", "spectrace:commit", "spectrace:materialSha256s",
-                          "spectrace:seconds", "spectrace:threads", "spectrace:isa", "spectrace:effectsUsed",
-                          "spectrace:effectsSkipped", "spectrace:invalidSamples", "spectrace:units"}) {
+  for (const char* key :
+       {"spectrace:version", "spectrace:commit", "spectrace:materialSha256s", "spectrace:seconds",
+        "spectrace:threads", "spectrace:isa", "spectrace:effectsUsed", "spectrace:effectsSkipped",
+        "spectrace:invalidSamples", "spectrace:units", "spectrace:extrapolatedShare"}) {
     EXPECT_TRUE(metadata.contains(key)) << key;
   }
 }
