@@ -1,112 +1,135 @@
 // SPDX-License-Identifier: Apache-2.0
-// `spectrace SCENE.json`: the main command. Separates the scene's measured materials first where asked to.
+// `spectrace SCENE.json [-o OUT.exr]`: the main command.
 #include "renderer/render.h"
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <variant>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/separation_cache.h"
 #include "core/base/error.h"
-#include "core/image/image.h"
-#include "renderer/scene.h"
-#include "renderer/scene_desc.h"
 
 namespace spectrace::cli {
+
 namespace {
 
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string scene, output, separate;
+  std::string scene, output;
   std::optional<int> spp;
   std::optional<std::uint64_t> seed;
   int threads = 0;
+  std::string separate;  // a model's name, or empty
+  std::string cache;
   bool strict = false;
+  bool layer_pngs = false;
+  double exposure = 1;
 };
 
-SeparationModel model_named(std::string_view name) {
-  for (const SeparationModel model :
-       {SeparationModel::kSun, SeparationModel::kFresnel, SeparationModel::kDiffraction}) {
-    if (name_of(model) == name) return model;
+/// Where separated materials wait for the next run: the user's cache (XDG Base Directory Specification).
+fs::path default_cache() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread starts
+    return std::string(value == nullptr ? "" : value);
+  };
+  if (const std::string cache = variable("XDG_CACHE_HOME"); !cache.empty()) {
+    return fs::path(cache) / "spectrace";
   }
-  throw InternalError(fmt::format("no model is named \"{}\"", name));  // the command line has checked it
+  const std::string home = variable("HOME");
+  return (home.empty() ? fs::temp_directory_path() : fs::path(home) / ".cache") / "spectrace";
 }
 
-/// Replaces every measured material by its separated form, kept in `cache` for the next time.
-void separate_materials(SceneDesc& scene, SeparationModel model, const fs::path& cache, int threads,
-                        Progress& progress) {
+fs::path output_file(const Arguments& arguments) {
+  const fs::path file =
+      arguments.output.empty() ? fs::path(arguments.scene).stem().concat(".exr") : fs::path(arguments.output);
+  // Found out now, not after hours of rendering.
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(folder.string(), "", "is no folder to write to");
+  }
+  return file;
+}
+
+SeparationModel model_named(const std::string& name) {
+  if (name == "sun") return SeparationModel::kSun;
+  return name == "fresnel" ? SeparationModel::kFresnel : SeparationModel::kDiffraction;
+}
+
+/// Every measured material becomes its separated form.
+void separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& progress) {
+  const fs::path cache = arguments.cache.empty() ? default_cache() : fs::path(arguments.cache);
   SeparationOptions options;
-  options.threads = threads;
+  options.threads = arguments.threads;
+  std::size_t count = 0;
   for (MaterialDesc& material : scene.materials) {
-    const auto* measured = std::get_if<MeasuredDesc>(&material.kind);
-    if (measured == nullptr) continue;
-    const CachedSeparation separated = cached_separation(measured->file, cache, options, progress);
-    progress.note(
-        separated.was_cached
-            ? fmt::format("material \"{}\": separated before, {}", material.name, separated.file.string())
-            : fmt::format("material \"{}\": {}", material.name, separated.report.brief()));
-    material.kind = SeparatedDesc{separated.file, model};
+    if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
+      const CachedSeparation separated = cached_separation(measured->file, cache, options, progress);
+      progress.note(fmt::format("{}: {} {}", material.name,
+                                separated.was_cached ? "separated before," : "separated into",
+                                separated.file.string()));
+      material.kind = SeparatedDesc{separated.file, model_named(arguments.separate)};
+      ++count;
+    }
+  }
+  if (count == 0) {
+    progress.note(fmt::format("{}: no measured material to separate", scene.file_name));
   }
 }
 
-std::string joined(const std::vector<std::string>& parts) {
-  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, "; "));
-}
-
-/// The picture to look at beside an EXR: out.png, out.diffuse.png, ...
-fs::path picture_path(const fs::path& exr, std::string_view layer) {
-  fs::path file = exr;
-  return file.replace_extension(layer.empty() ? ".png" : fmt::format(".{}.png", layer));
-}
-
-void write_outputs(const fs::path& output, const Image& image, const Metadata& metadata) {
-  write_exr(output, image, metadata);
-  for (const std::string_view layer : {"", "diffuse", "specular"}) {
-    write_png(picture_path(output, layer), image, layer);
+void print_summary(const fs::path& file, const RenderOptions& options, const RenderResult& result) {
+  const RenderReport& report = result.report;
+  fmt::print(
+      "{}: {} x {}, {} samples a pixel, {:.2f} s on {} threads, {:.3g} million paths/s, {} invalid samples\n",
+      file.string(), result.image.width, result.image.height, options.spp, report.seconds, report.threads,
+      double(report.paths) / report.seconds * 1e-6, report.invalid_samples);
+  fmt::print("kernel: {}\neffects: {}\n", report.kernel, fmt::join(report.effects_used, ", "));
+  for (const std::string& skipped : report.effects_skipped) {
+    fmt::print("skipped: {}\n", skipped);
   }
 }
 
-void print_report(const fs::path& output, const RenderReport& report) {
-  fmt::print("kernel   {}\n", report.kernel);
-  fmt::print("used     {}\n", joined(report.effects_used));
-  fmt::print("skipped  {}\n", joined(report.effects_skipped));
-  fmt::print("paths    {} in {:.2f} s on {} threads, {:.2f} million a second\n", report.paths, report.seconds,
-             report.threads, double(report.paths) / report.seconds * 1e-6);
-  fmt::print("invalid  {} samples dropped\n", report.invalid_samples);
-  fmt::print("wrote    {}, {}, {}, {}\n", output.string(), picture_path(output, "").string(),
-             picture_path(output, "diffuse").string(), picture_path(output, "specular").string());
+void write_images(const fs::path& file, const Image& image, const Metadata& metadata,
+                  const Arguments& arguments) {
+  write_exr(file, image, metadata);
+  const auto beside = [&](const std::string& suffix) {
+    return fs::path(file).replace_extension().concat(suffix + ".png");
+  };
+  write_png(beside(""), image, "", arguments.exposure);
+  if (arguments.layer_pngs) {
+    for (const char* layer : {"diffuse", "specular"}) {
+      write_png(beside(std::string("-") + layer), image, layer, arguments.exposure);
+    }
+  }
 }
 
 ExitCode render_command(const Arguments& arguments) {
-  const fs::path output = arguments.output.empty()
-                              ? fs::path(arguments.scene).filename().replace_extension(".exr")
-                              : fs::path(arguments.output);
   ConsoleProgress progress;
+  const fs::path file = output_file(arguments);
   SceneDesc description = load_scene(arguments.scene);
   if (!arguments.separate.empty()) {
-    separate_materials(description, model_named(arguments.separate), output.parent_path() / "separated.cache",
-                       arguments.threads, progress);
+    separate_materials(description, arguments, progress);
   }
   const Scene scene = build_scene(description, progress);
   const RenderOptions options{.spp = arguments.spp.value_or(scene.spp),
                               .seed = arguments.seed.value_or(scene.seed),
                               .threads = arguments.threads};
   const RenderResult result = render(scene, options, progress);
-  progress.finish();
-
   Metadata metadata = provenance(scene, options, result.report);
-  if (!arguments.separate.empty()) metadata["spectrace:separationModel"] = arguments.separate;
-  write_outputs(output, result.image, metadata);
-  print_report(output, result.report);
+  if (!arguments.separate.empty()) {
+    metadata["spectrace:separation"] = arguments.separate;
+  }
+  write_images(file, result.image, metadata, arguments);
+  progress.finish();
+  print_summary(file, options, result);
   return arguments.strict && result.report.invalid_samples > 0 ? ExitCode::kDiffers : ExitCode::kSuccess;
 }
 
@@ -116,23 +139,32 @@ void add_render(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<Arguments>();
   app.add_option("scene", arguments->scene, "scene to render (.json)");
   app.add_option("-o,--output", arguments->output,
-                 "image to write (.exr), a .png beside it; default: the scene's name, here")
-      ->check([](const std::string& name) {
-        return fs::path(name).extension() == ".exr" ? std::string() : "must end in .exr: " + name;
-      });
-  app.add_option("--spp", arguments->spp, "samples a pixel, instead of the scene's")
+                 "image to write (.exr), a .png beside it; default: the scene's "
+                 "name, in the current folder");
+  app.add_option("--spp", arguments->spp, "samples a pixel; default: the scene's")
       ->check(CLI::Range(1, 1 << 30));
-  app.add_option("--seed", arguments->seed, "seed of the random numbers, instead of the scene's");
-  app.add_option("--threads", arguments->threads,
-                 "threads to use, 0 = all cores; changes no bit of the image")
+  app.add_option("--seed", arguments->seed, "of the random numbers; default: the scene's");
+  app.add_option("--threads", arguments->threads, "0 = all cores; changes no bit of the image")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   app.add_option("--separate", arguments->separate,
                  "separate every measured material first and render it with this model")
       ->check(CLI::IsMember({"sun", "fresnel", "diffraction"}));
-  app.add_flag("--strict", arguments->strict, "exit with 1 where any sample had to be dropped");
-  app.callback([arguments, &chosen] {
-    if (!arguments->scene.empty()) chosen = [arguments] { return render_command(*arguments); };
+  app.add_option("--cache", arguments->cache,
+                 "folder that keeps separated materials; default: ~/.cache/spectrace");
+  app.add_option("--exposure", arguments->exposure, "factor on the PNG, not on the EXR")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--layer-pngs", arguments->layer_pngs, "also write -diffuse.png and -specular.png");
+  app.add_flag("--strict", arguments->strict, "exit with 1 if any sample was invalid (not finite, negative)");
+  app.callback([&app, &chosen, arguments] {
+    if (arguments->scene.empty() || !app.get_subcommands().empty()) {
+      return;
+    }
+    if (!arguments->output.empty() && fs::path(arguments->output).extension() != ".exr") {
+      throw CLI::ValidationError("--output", "must end in .exr");
+    }
+    chosen = [arguments] { return render_command(*arguments); };
   });
 }
 
