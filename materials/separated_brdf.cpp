@@ -151,7 +151,7 @@ std::optional<BsdfSample> SeparatedBrdf::sample(Vec3 wo, const BsdfRandom& u, co
   if (!wi || !(wi->z > 0)) return std::nullopt;
 
   const BsdfValue value = evaluate(wo, *wi, at);
-  if (!(value.pdf > 0) || !std::isfinite(value.pdf)) return std::nullopt;
+  if (!std::isnormal(value.pdf)) return std::nullopt;  // 1 / pdf overflows below the normal numbers
   return BsdfSample{.wi = *wi,
                     .weight = value.value_cos / value.pdf,
                     .pdf = value.pdf,

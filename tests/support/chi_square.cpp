@@ -48,25 +48,31 @@ struct Cell {
   double s0 = 0, s1 = 1, phi0 = -kPiD, phi1 = kPiD;
 };
 
-/// A cell and the box of its pilots: where most of its mass lies.
-struct PilotCell {
-  Cell cell, box;
+/// A few pilots, the box around them where most of the leaf's mass lies, and the cell it belongs to.
+struct Leaf {
+  Cell extent, box;
+  std::size_t cell = 0;
 };
 
-/// Cuts the hemisphere at medians of pilot samples until few are left in each cell.
+/// So few pilots that a density peaked on a corner of a cell still fills its leaves.
+constexpr std::size_t kPilotsPerLeaf = 16;
+
+/// Cuts the hemisphere at medians of pilot samples: into cells, whose counts are compared, and those into
+/// leaves, over which the density is integrated.
 class CellTree {
  public:
-  CellTree(std::vector<CellPoint> pilots, std::size_t pilots_per_cell) {
-    build(pilots.begin(), pilots.end(), Cell{}, pilots_per_cell);
+  CellTree(std::vector<CellPoint> pilots, std::size_t pilots_per_cell) : pilots_per_cell_(pilots_per_cell) {
+    build(pilots.begin(), pilots.end(), Cell{}, std::nullopt);
   }
-  [[nodiscard]] const std::vector<PilotCell>& cells() const { return cells_; }
+  [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
+  [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::size_t find(CellPoint p) const {
     std::size_t node = 0;
-    while (nodes_[node].cell < 0) {
+    while (!nodes_[node].cell) {
       const double x = nodes_[node].along_s ? p.s : p.phi;
       node = x < nodes_[node].split ? node + 1 : nodes_[node].upper;
     }
-    return static_cast<std::size_t>(nodes_[node].cell);
+    return *nodes_[node].cell;
   }
 
  private:
@@ -74,39 +80,38 @@ class CellTree {
   struct Node {
     bool along_s = true;
     double split = 0;
-    std::size_t upper = 0;  // the lower child follows its parent
-    long cell = -1;
+    std::size_t upper = 0;            // the lower child follows its parent
+    std::optional<std::size_t> cell;  // of this node and all below
   };
 
-  void build(Iterator begin, Iterator end, Cell cell, std::size_t pilots_per_cell) {
-    const std::size_t index = nodes_.size();
-    nodes_.emplace_back();
+  void build(Iterator begin, Iterator end, const Cell& extent, std::optional<std::size_t> cell) {
     const auto count = static_cast<std::size_t>(end - begin);
-    bool along_s = true;
-    double split = 0;
-    bool splits = count > pilots_per_cell;
-    if (splits) {
-      along_s = longer_along_s(begin, end);
+    if (!cell && count <= pilots_per_cell_) cell = cells_++;
+    const std::size_t index = nodes_.size();
+    nodes_.push_back({.cell = cell});
+    if (count > kPilotsPerLeaf) {
+      const bool along_s = longer_along_s(begin, end);
       const auto coordinate = [along_s](CellPoint p) { return along_s ? p.s : p.phi; };
       const Iterator middle = begin + static_cast<std::ptrdiff_t>(count / 2);
       std::nth_element(begin, middle, end,
                        [&](CellPoint a, CellPoint b) { return coordinate(a) < coordinate(b); });
-      split = coordinate(*middle);
+      const double split = coordinate(*middle);
       const Iterator bound = std::partition(begin, end, [&](CellPoint p) { return coordinate(p) < split; });
-      splits = bound != begin && bound != end;  // all pilots alike: a lobe of no width
-      if (splits) {
-        Cell lower = cell, upper = cell;
+      if (bound != begin) {
+        Cell lower = extent, upper = extent;
         (along_s ? lower.s1 : lower.phi1) = split;
         (along_s ? upper.s0 : upper.phi0) = split;
-        build(begin, bound, lower, pilots_per_cell);
-        nodes_[index] = {along_s, split, nodes_.size(), -1};
-        build(bound, end, upper, pilots_per_cell);
+        nodes_[index].along_s = along_s;
+        nodes_[index].split = split;
+        build(begin, bound, lower, cell);
+        nodes_[index].upper = nodes_.size();
+        build(bound, end, upper, cell);
+        return;
       }
+      // All pilots alike: a lobe of no width.
     }
-    if (!splits) {
-      nodes_[index].cell = static_cast<long>(cells_.size());
-      cells_.push_back({cell, begin == end ? cell : box_of(begin, end)});
-    }
+    if (!cell) nodes_[index].cell = cell = cells_++;
+    leaves_.push_back({extent, begin == end ? extent : box_of(begin, end), *cell});
   }
 
   static Cell box_of(Iterator begin, Iterator end) {
@@ -124,22 +129,24 @@ class CellTree {
     return 2 * (box.s1 - box.s0) > s * (2 - s * s) * (box.phi1 - box.phi0);
   }
 
+  std::size_t pilots_per_cell_, cells_ = 0;
   std::vector<Node> nodes_;
-  std::vector<PilotCell> cells_;
+  std::vector<Leaf> leaves_;
 };
 
-/// Gauss-Legendre with 4 x 4 points a cell, compared with four quarters of it, and so on.
+/// Gauss-Legendre with 3 x 3 points a leaf, compared with four quarters of it, and so on.
 class Quadrature {
  public:
   Quadrature(const DirectionDensity& density, const Chart& chart, double relative, double absolute)
       : density_(density), chart_(chart), relative_(relative), absolute_(absolute) {}
 
-  /// A cell at the skirt of a lobe is far wider than its mass, and a rule that looks for it by halving may
+  /// A leaf at the skirt of a lobe is far wider than its mass, and a rule that looks for it by halving may
   /// see nothing at all. So the box of the pilots comes first, then strips that double in width away from it.
-  double integrate(const PilotCell& c) {
+  double integrate(const Leaf& leaf) {
+    const Cell &c = leaf.extent, &box = leaf.box;
     double sum = 0;
-    const std::vector<double> s = breakpoints(c.cell.s0, c.box.s0, c.box.s1, c.cell.s1);
-    const std::vector<double> phi = breakpoints(c.cell.phi0, c.box.phi0, c.box.phi1, c.cell.phi1);
+    const std::vector<double> s = breakpoints(c.s0, box.s0, box.s1, c.s1);
+    const std::vector<double> phi = breakpoints(c.phi0, box.phi0, box.phi1, c.phi1);
     for (std::size_t i = 0; i + 1 < s.size(); ++i) {
       for (std::size_t j = 0; j + 1 < phi.size(); ++j) {
         const Cell part{s[i], s[i + 1], phi[j], phi[j + 1]};
@@ -152,7 +159,7 @@ class Quadrature {
   std::size_t evaluations() const { return evaluations_; }
 
  private:
-  // 4^7 quarters resolve a peak of 1/128 of the cell's side; cells already follow the pilots.
+  // 4^7 quarters resolve a peak of 1/128 of the leaf's side; leaves already follow the pilots.
   static constexpr int kMaxDepth = 7;
 
   static std::vector<double> breakpoints(double low, double box_low, double box_high, double high) {
@@ -184,20 +191,18 @@ class Quadrature {
   }
 
   double gauss(const Cell& c) {
-    static constexpr std::array<double, 4> kNodes{-0.8611363115940526, -0.3399810435848563,
-                                                  0.3399810435848563, 0.8611363115940526};
-    static constexpr std::array<double, 4> kWeights{0.3478548451374538, 0.6521451548625461,
-                                                    0.6521451548625461, 0.3478548451374538};
+    static constexpr std::array<double, 3> kNodes{-0.7745966692414834, 0, 0.7745966692414834};
+    static constexpr std::array<double, 3> kWeights{5.0 / 9, 8.0 / 9, 5.0 / 9};
     const double hs = (c.s1 - c.s0) / 2, hp = (c.phi1 - c.phi0) / 2;
     double sum = 0;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 3; ++i) {
       const double s = c.s0 + hs * (1 + kNodes[i]);
-      for (int j = 0; j < 4; ++j) {
+      for (int j = 0; j < 3; ++j) {
         const double phi = c.phi0 + hp * (1 + kNodes[j]);
         sum += kWeights[i] * kWeights[j] * 2 * s * density_(chart_.to_direction({s, phi}));
       }
     }
-    evaluations_ += 16;
+    evaluations_ += 9;
     return sum * hs * hp;
   }
 
@@ -290,7 +295,7 @@ SamplingTestResult test_sampling(const DrawDirection& draw, const DirectionDensi
   const CellTree tree(std::move(pilots), options.pilots_per_cell);
 
   SamplingTestResult result;
-  result.cells = tree.cells().size();
+  result.cells = tree.cells();
   std::vector<CellCount> counts(result.cells);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < options.samples; ++i) {
@@ -301,10 +306,11 @@ SamplingTestResult test_sampling(const DrawDirection& draw, const DirectionDensi
     ++counts[tree.find(chart.to_cell(*w))].observed;
   }
   Quadrature quadrature(density, chart, options.quadrature_tolerance,
-                        options.quadrature_tolerance / static_cast<double>(result.cells) / 10);
-  for (std::size_t i = 0; i < result.cells; ++i) {
-    counts[i].expected = quadrature.integrate(tree.cells()[i]);
-    result.integral += counts[i].expected;
+                        options.quadrature_tolerance / static_cast<double>(tree.leaves().size()));
+  for (const Leaf& leaf : tree.leaves()) {
+    const double mass = quadrature.integrate(leaf);
+    counts[leaf.cell].expected += mass;
+    result.integral += mass;
   }
   result.integral_error = quadrature.error();
   result.evaluations = quadrature.evaluations();

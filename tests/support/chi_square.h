@@ -44,7 +44,7 @@ struct SamplingTestOptions {
   /// samples · pilot_per_cell / pilots of them each, however narrow the lobe.
   std::size_t pilots = 100'000;
   std::size_t pilots_per_cell = 100;
-  /// Relative, of each cell's integral. A systematic error ε adds samples · ε² = 1 to a statistic whose
+  /// Relative, of each leaf's integral. A systematic error ε adds samples · ε² = 1 to a statistic whose
   /// standard deviation is sqrt(2 · 1000 cells) = 45.
   double quadrature_tolerance = 1e-3;
   std::uint64_t seed = 1;
