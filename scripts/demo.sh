@@ -18,19 +18,16 @@ models=(sun fresnel diffraction)
 
 step() { printf '\n== %s\n' "$*"; }
 
-if (($# == 0)); then
-  if [[ ! -e $out/pearlescent.bsdf || scenes/materials/pearlescent.json -nt $out/pearlescent.bsdf ]]; then
-    step "Measure scenes/materials/pearlescent.json"
-    "$spectrace" acquire scenes/materials/pearlescent.json -o "$out/pearlescent.bsdf"
-  fi
-  step "Separate $out/pearlescent.bsdf"
-  "$spectrace" separate "$out/pearlescent.bsdf" -o "$out/pearlescent.sep"
+if (($# == 0)) && [[ ! -e $out/pearlescent.bsdf || scenes/materials/pearlescent.json -nt $out/pearlescent.bsdf ]]; then
+  step "Measure scenes/materials/pearlescent.json"
+  "$spectrace" acquire scenes/materials/pearlescent.json -o "$out/pearlescent.bsdf"
 fi
 
-step "Render $scene: the measurement itself, then each model"
+step "Render $scene: the measurement itself"
 "$spectrace" "$scene" -o "$out/raw.exr"
 for model in "${models[@]}"; do
-  "$spectrace" "$scene" --separate "$model" -o "$out/$model.exr"
+  step "Render it separated (once, kept in $out/separated), model $model"
+  "$spectrace" "$scene" --separate "$model" --cache "$out/separated" -o "$out/$model.exr"
 done
 
 step "How close is each model to the measurement?"
@@ -40,4 +37,4 @@ step "The pictures"
 "$spectrace" sheet "$out/contact_sheet.png" "$out"/{raw,sun,fresnel,diffraction}.exr \
   --labels "measured,sun,fresnel,diffraction"
 echo
-ls -1 "$out"/*.exr "$out"/*.png
+ls -1 "$out"/*.exr "$out"/*.png "$out"/separated/*.sep

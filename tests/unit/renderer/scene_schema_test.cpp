@@ -119,8 +119,7 @@ bool is_beyond_schema(const std::string& problem) {
       "pixels: more than",
       "wavelengths must increase",
       "one for each wavelength",
-      "must be > 0",  // minimum of a spectrum
-      "must be >= 0",
+      "at every wavelength",  // minimum of a spectrum
       "must be at most 1",  // sum of two shares
       "a triangle without positions",
       "in [0, 2], got",  // indices of three positions
