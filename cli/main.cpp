@@ -12,15 +12,6 @@
 #include "core/base/version.h"
 
 namespace spectrace::cli {
-
-// Weak until every command has its file: a program with some of them links.
-[[gnu::weak]] void add_render(CLI::App& app, Action& chosen);
-[[gnu::weak]] void add_separate(CLI::App& app, Action& chosen);
-[[gnu::weak]] void add_compare(CLI::App& app, Action& chosen);
-[[gnu::weak]] void add_inspect(CLI::App& app, Action& chosen);
-[[gnu::weak]] void add_acquire(CLI::App& app, Action& chosen);
-[[gnu::weak]] void add_sheet(CLI::App& app, Action& chosen);
-
 namespace {
 
 constexpr const char* kExamples =
@@ -41,11 +32,12 @@ ExitCode run(int argc, const char* const* argv) {
   app.footer(kExamples);
   app.require_subcommand(0, 1);
   Action chosen;
-  for (auto* add : {&add_render, &add_separate, &add_compare, &add_inspect, &add_acquire, &add_sheet}) {
-    if (add != nullptr) {
-      add(app, chosen);
-    }
-  }
+  add_render(app, chosen);
+  add_separate(app, chosen);
+  add_compare(app, chosen);
+  add_inspect(app, chosen);
+  add_acquire(app, chosen);
+  add_sheet(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measuring and separating, as a user does.
+#include <algorithm>
+
+#include "materials/measured_tables.h"
+#include "materials/separated_tables.h"
+#include "tests/cli/program.h"
+#include "tests/support/synthetic_measured.h"
+
+namespace spectrace::test {
+namespace {
+
+using Separate = Program;
+
+TEST_F(Separate, AcquireThenSeparateThenInspect) {
+  const std::string material = (kScenes / "materials/glossy.json").string();
+  ASSERT_EQ(run({"acquire", material, "-o", "g.bsdf", "--elevations", "5", "--table", "12"}).exit_code, 0);
+  EXPECT_EQ(read_measured(folder_ / "g.bsdf").axis.size(), 195U);
+  const ProgramResult separated = run({"separate", "g.bsdf", "-o", "g.sep", "--report", "g.report.json"});
+  ASSERT_EQ(separated.exit_code, 0) << separated.errors;
+  EXPECT_NE(separated.output.find("alpha"), std::string::npos) << separated.output;
+  EXPECT_NE(read_text(folder_ / "g.report.json").find("step1"), std::string::npos);
+  EXPECT_EQ(run({"inspect", "g.sep"}).exit_code, 0);
+  EXPECT_NO_THROW(read_separated(folder_ / "g.sep"));
+}
+
+TEST_F(Separate, AcquireRefusesWhatItCannotMeasure) {
+  write_text(folder_ / "glass.json", R"({"name": "glass", "type": "dielectric", "eta": 1.5})");
+  write_text(folder_ / "mirror.json", R"({"name": "mirror", "type": "conductor", "eta": 0.2, "k": 3})");
+  write_text(folder_ / "two.json", "{\"name\": \"m\",\n \"type\": \"lamber\"}");
+  expect_bad_input({"acquire", "glass.json", "-o", "out.bsdf"}, "glass.json:");
+  expect_bad_input({"acquire", "mirror.json", "-o", "out.bsdf"}, "mirror.json:");
+  expect_bad_input({"acquire", "two.json", "-o", "out.bsdf"}, "two.json:2:10: /type: ");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.bsdf"));
+}
+
+TEST_F(Separate, SeparateSaysWhereAFitIsUnusable) {
+  MeasuredTables dark = make_measured({});
+  std::fill(dark.spectra.begin(), dark.spectra.end(), 0.0F);
+  std::fill(dark.luminance.begin(), dark.luminance.end(), 0.0F);
+  dark.valid.assign(dark.slices() * dark.table_size * dark.table_size, 0);  // nothing was measured
+  measured_to_tensors(dark).write(folder_ / "dark.bsdf");
+  const ProgramResult result = run({"separate", "dark.bsdf", "-o", "dark.sep"});
+  EXPECT_EQ(result.exit_code, 1) << result.output << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "dark.sep"));
+}
+
+}  // namespace
+}  // namespace spectrace::test
