@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "materials/acquisition.h"
 #include "materials/half_difference.h"
+#include "separation/separate.h"
 #include "tests/support/test_data.h"
 
 namespace spectrace::test {
@@ -52,6 +53,15 @@ MeasuredTables acquire_for_test(const Material& material, int azimuths = 1, int 
   return acquire(material, options, progress);
 }
 
+/// What separation itself makes of an acquired material, on a coarse grid.
+std::shared_ptr<const SeparatedTables> separate_for_test(const std::string& name) {
+  SeparationOptions options;
+  options.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
+  SilentProgress progress;
+  return std::make_shared<const SeparatedTables>(
+      separate(MeasuredBrdf(acquire_for_test(built_in(name))), options, progress).tables);
+}
+
 /// A specular table with one GGX lobe, and colours that differ in every model.
 std::shared_ptr<const SeparatedTables> separated_tables(Float alpha) {
   SeparatedTables t;
@@ -87,7 +97,7 @@ void add_analytic(std::vector<BsdfCase>& cases) {
                      .make = std::move(make),
                      .is_reciprocal = true,
                      .conserves_energy = true,
-                     .is_smooth_at_specular = true});
+                     .specular_step = 1e-5});
   };
   add("Lambert", [] { return Lambert{ramp(Float(0.1), Float(1))}; });
   add("RoughConductorAlpha005", [] { return RoughConductor{gold_like(), {Float(0.05), Float(0.05)}}; });
@@ -112,6 +122,9 @@ void add_analytic(std::vector<BsdfCase>& cases) {
   add("BuiltInPearlescent", [] { return built_in("pearlescent"); });
 }
 
+/// Linear in sqrt(theta_h): 1e-6 rad is a twentieth of the first cell of these coarse grids.
+constexpr double kSeparatedStep = 1e-4;
+
 void add_separated(std::vector<BsdfCase>& cases) {
   for (const SeparationModel model :
        {SeparationModel::kSun, SeparationModel::kFresnel, SeparationModel::kDiffraction}) {
@@ -121,8 +134,13 @@ void add_separated(std::vector<BsdfCase>& cases) {
                        .make = [model, alpha] { return SeparatedBrdf(separated_tables(alpha), model); },
                        .is_reciprocal = true,
                        .conserves_energy = false,
-                       .is_smooth_at_specular = true});
+                       .specular_step = kSeparatedStep});
     }
+    cases.push_back({.name = "Separated_" + name_of(model) + "_of_pearlescent",
+                     .make = [model] { return SeparatedBrdf(separate_for_test("pearlescent"), model); },
+                     .is_reciprocal = true,
+                     .conserves_energy = false,
+                     .specular_step = kSeparatedStep});
   }
 }
 

@@ -18,9 +18,10 @@ struct BsdfCase {
   std::function<std::optional<Material>()> make;
   bool is_reciprocal = false;
   bool conserves_energy = false;
-  /// Its value at theta_h = 0 does not depend on the side it is approached from. Measured tables do not
-  /// promise it: their nodes at theta_h = 0 were measured one by one, at all azimuths.
-  bool is_smooth_at_specular = false;
+  /// How much its value may change between theta_h = 0 and 1e-6 rad beside it, relative, to any side (hard
+  /// case H5). Measured tables promise nothing: their nodes at theta_h = 0 were measured one by one, at all
+  /// azimuths.
+  std::optional<double> specular_step = std::nullopt;
 
   friend std::ostream& operator<<(std::ostream& out, const BsdfCase& c) { return out << c.name; }
 };
