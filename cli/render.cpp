@@ -31,6 +31,7 @@ struct Arguments {
   std::string cache;
   bool strict = false;
   bool layer_pngs = false;
+  bool beauty_only = false;
   double exposure = 1;
 };
 
@@ -104,7 +105,7 @@ void write_images(const fs::path& file, const Image& image, const Metadata& meta
     return fs::path(file).replace_extension().concat(suffix + ".png");
   };
   write_png(beside(""), image, "", arguments.exposure);
-  if (arguments.layer_pngs) {
+  if (arguments.layer_pngs && !arguments.beauty_only) {
     for (const char* layer : {"diffuse", "specular"}) {
       write_png(beside(std::string("-") + layer), image, layer, arguments.exposure);
     }
@@ -121,7 +122,8 @@ ExitCode render_command(const Arguments& arguments) {
   const Scene scene = build_scene(description, progress);
   const RenderOptions options{.spp = arguments.spp.value_or(scene.spp),
                               .seed = arguments.seed.value_or(scene.seed),
-                              .threads = arguments.threads};
+                              .threads = arguments.threads,
+                              .layers = !arguments.beauty_only};
   const RenderResult result = render(scene, options, progress);
   Metadata metadata = provenance(scene, options, result.report);
   if (!arguments.separate.empty()) {
@@ -156,6 +158,8 @@ void add_render(CLI::App& app, Action& chosen) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_flag("--layer-pngs", arguments->layer_pngs, "also write -diffuse.png and -specular.png");
+  app.add_flag("--beauty-only", arguments->beauty_only,
+               "leave out diffuse, specular, emission and background: faster");
   app.add_flag("--strict", arguments->strict, "exit with 1 if any sample was invalid (not finite, negative)");
   app.callback([&app, &chosen, arguments] {
     if (arguments->scene.empty() || !app.get_subcommands().empty()) {

@@ -27,8 +27,8 @@ struct SurfaceQuery {
 
 /// Steps of float rounding, relative to the largest coordinate involved, that a new ray starts off the
 /// surface. Position from barycentric weights: 4; Embree's distance to a plane through vertices moved to the
-/// ray's origin: about 6; the offset itself: 1. Doubled, since those are estimates: the acne test
-/// (tests/render/ray_offset_test.cpp) fails below 4.
+/// ray's origin: about 6; the offset itself: 1. Doubled, since those are estimates.
+/// tests/render/robustness_test.cpp finds self-hits at 4.
 inline constexpr Float kOffsetSteps = 24;
 inline constexpr Float kFloatRounding = Float(0x1p-24);  // Embree computes in float whatever Float is
 

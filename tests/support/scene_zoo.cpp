@@ -6,6 +6,7 @@
 #include "materials/measured_tables.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/synthetic_measured.h"
+#include "tests/support/synthetic_separated.h"
 
 namespace spectrace::test {
 
@@ -91,6 +92,13 @@ MaterialDesc measured(const std::string& name) {
   return {.name = name, .where = "", .kind = MeasuredDesc{file}};
 }
 
+MaterialDesc separated(const std::string& name) {
+  const auto file = std::filesystem::temp_directory_path() / "spectrace_scene_zoo.sep";
+  separated_to_tensors(*synthetic_separated({.grid = {.n_theta_h = 16, .n_theta_d = 16, .n_phi_d = 24}}))
+      .write(file);
+  return {.name = name, .where = "", .kind = SeparatedDesc{file, SeparationModel::kDiffraction}};
+}
+
 }  // namespace
 
 std::vector<NamedScene> scene_zoo() {
@@ -127,6 +135,9 @@ std::vector<NamedScene> scene_zoo() {
   zoo.back().scene.shapes.push_back(lamp());
   zoo.push_back({"instances", instance_scene()});
   zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back({"separated ball", ball_scene(separated("ball"), lambert("floor", Float(0.4)))});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.back().scene.lights = {sky(Float(0.3))};
   return zoo;
