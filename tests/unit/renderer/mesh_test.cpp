@@ -92,9 +92,9 @@ TEST(Mesh, ObjFacesBecomeTrianglesWithTheirNormalsAndCoordinates) {
 }
 
 TEST(Mesh, BadObjFilesAreInputErrors) {
-  EXPECT_THROW(read_obj("/nowhere/x.obj"), InputError);
-  EXPECT_THROW(read_obj(write("range.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n")), InputError);
-  EXPECT_THROW(read_obj(write("zero.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n")), InputError);
+  EXPECT_THROW((void)read_obj("/nowhere/x.obj"), InputError);
+  EXPECT_THROW((void)read_obj(write("range.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n")), InputError);
+  EXPECT_THROW((void)read_obj(write("zero.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n")), InputError);
 }
 
 }  // namespace
