@@ -24,6 +24,12 @@ Vec3 sample_cosine(Vec2 u) {
   return {r * std::cos(phi), r * std::sin(phi), safe_sqrt(1 - u.x)};
 }
 
+Float interpolate(const std::vector<float>& table, const GridPoint& point) {
+  Float sum = 0;
+  for (std::size_t i = 0; i < point.cell.size(); ++i) sum += point.cell_weight[i] * table[point.cell[i]];
+  return sum;
+}
+
 bool above_horizon(Vec3 wo, Vec3 wi) { return wo.z > 0 && wi.z > 0; }
 
 }  // namespace
@@ -35,18 +41,22 @@ struct SeparatedBrdf::Data {
   std::shared_ptr<const SeparatedTables> tables;
   SeparatedSampler sampler;
 
-  /// The specular lobe at a pair of directions, before its spectral factor.
-  struct Specular {
+  /// Both lobes at a pair of directions, before their colours.
+  struct Shape {
     GridPoint point;
-    Float value_cos = 0;  ///< ρ_s cosθi
+    Float diffuse_cos = 0;   ///< ρ_d cosθi for c_d = 1
+    Float specular_cos = 0;  ///< ρ_s cosθi
   };
-  [[nodiscard]] Specular specular(Vec3 wo, Vec3 wi) const {
-    Specular result{tables->grid.locate(to_half_difference(wo, wi))};
-    Float q = 0;
-    for (std::size_t i = 0; i < 8; ++i)
-      q += result.point.cell_weight[i] * tables->rho_s[result.point.cell[i]];
-    // q = ρ_s (cosθi + cosθo): the quotient is at most 1 however low either direction (hard case H3).
-    result.value_cos = q * (wi.z / (wi.z + wo.z));
+  [[nodiscard]] Shape shape(Vec3 wo, Vec3 wi) const {
+    Shape result;
+    result.diffuse_cos = wi.z * kInvPi;
+    if (sampler.is_empty() && tables->diffuse_shape.empty()) return result;
+    result.point = tables->grid.locate(to_half_difference(wo, wi));
+    if (!tables->diffuse_shape.empty())
+      result.diffuse_cos *= interpolate(tables->diffuse_shape, result.point);
+    // The table holds q = ρ_s (cosθi + cosθo): the quotient is at most 1 however low either direction (hard
+    // case H3).
+    result.specular_cos = interpolate(tables->rho_s, result.point) * (wi.z / (wi.z + wo.z));
     return result;
   }
   [[nodiscard]] SampledSpectrum s_fresnel(const GridPoint& point, const SpectralAxis::Lookup& lookup) const {
@@ -109,29 +119,27 @@ BsdfValue SeparatedBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) cons
   const Float share = data_->specular_share(wo, c_d, lookup);
   if (share == 0 && c_d.is_zero()) return {};
 
-  BsdfValue result{c_d * (wi.z * kInvPi), data_->pdf(wo, wi, share)};
-  if (share > 0) {
-    const Data::Specular specular = data_->specular(wo, wi);
-    result.value_cos += data_->spectral_factor(model_, specular.point, lookup) * specular.value_cos;
-  }
+  const Data::Shape shape = data_->shape(wo, wi);
+  BsdfValue result{c_d * shape.diffuse_cos, data_->pdf(wo, wi, share)};
+  if (share > 0) result.value_cos += data_->spectral_factor(model_, shape.point, lookup) * shape.specular_cos;
   return result;
 }
 
 LobeValues SeparatedBrdf::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
   if (!above_horizon(wo, wi)) return {};
   const SpectralAxis::Lookup lookup = tables().axis.lookup(at.lambda);
-  LobeValues lobes{
-      .diffuse = lookup.apply(tables().c_d.data()) * (wi.z * kInvPi), .fresnel = {}, .diffraction = {}};
+  const Data::Shape shape = data_->shape(wo, wi);
+  LobeValues lobes;
+  lobes.diffuse = lookup.apply(tables().c_d.data()) * shape.diffuse_cos;
   if (data_->sampler.is_empty()) return lobes;
 
-  const Data::Specular specular = data_->specular(wo, wi);
   if (model_ == SeparationModel::kDiffraction) {
-    const SampledSpectrum fresnel = data_->s_fresnel(specular.point, lookup);
-    lobes.fresnel = fresnel * specular.value_cos;
+    const SampledSpectrum fresnel = data_->s_fresnel(shape.point, lookup);
+    lobes.fresnel = fresnel * shape.specular_cos;
     // eq. 21
-    lobes.diffraction = (data_->s_diffraction(specular.point, lookup) - fresnel) * specular.value_cos;
+    lobes.diffraction = (data_->s_diffraction(shape.point, lookup) - fresnel) * shape.specular_cos;
   } else {
-    lobes.fresnel = data_->spectral_factor(model_, specular.point, lookup) * specular.value_cos;
+    lobes.fresnel = data_->spectral_factor(model_, shape.point, lookup) * shape.specular_cos;
   }
   return lobes;
 }

@@ -195,6 +195,12 @@ SeparatedTables separated_from_tensors(const TensorFile& tensors) {
              p = static_cast<std::size_t>(tables.grid.n_phi_d);
   tables.c_d = reader.non_negative("c_d", std::array{n});
   tables.rho_s = reader.non_negative("rho_s", std::array{h, d, p});
+  if (tensors.find("diffuse_shape")) {
+    tables.diffuse_shape = reader.non_negative("diffuse_shape", std::array{h, d, p});
+    if (*std::max_element(tables.diffuse_shape.begin(), tables.diffuse_shape.end()) > 1) {
+      reader.fail("diffuse_shape", "expected values in [0, 1]");
+    }
+  }
   tables.s_sun = reader.non_negative("s_sun", std::array{n});
   tables.s_fresnel = reader.non_negative("s_fresnel", std::array{d, n});
   tables.s_diffraction = reader.non_negative("s_diffraction", std::array{h, d, n});
@@ -214,6 +220,9 @@ TensorFile separated_to_tensors(const SeparatedTables& tables) {
   file.add(Tensor::from_text("theta_h_spacing", tables.grid.quadratic_theta_h ? "quadratic" : "uniform"));
   if (!tables.axis.is_rgb()) file.add(Tensor::from_floats("wavelengths", {n}, tables.axis.lambda_nm()));
   file.add(Tensor::from_floats("c_d", {n}, tables.c_d));
+  if (!tables.diffuse_shape.empty()) {
+    file.add(Tensor::from_floats("diffuse_shape", {h, d, p}, tables.diffuse_shape));
+  }
   file.add(Tensor::from_floats("rho_s", {h, d, p}, tables.rho_s));
   file.add(Tensor::from_floats("s_sun", {n}, tables.s_sun));
   file.add(Tensor::from_floats("s_fresnel", {d, n}, tables.s_fresnel));

@@ -49,13 +49,15 @@ struct HalfDifferenceGrid {
 enum class SeparationModel : std::uint8_t { kSun, kFresnel, kDiffraction };
 [[nodiscard]] std::string name_of(SeparationModel model);  ///< "sun", "fresnel", "diffraction"
 
-/// ρ(wi, wo, λ) = c_d(λ)/π + ρ_s(wi, wo) · s(θh, θd, λ).
-/// `rho_s` holds ρ_s · (cosθi + cosθo) = ρ_s · 2 cosθh cosθd, which stays bounded at grazing (ADR 0005);
+/// ρ(wi, wo, λ) = c_d(λ)/π + ρ_s(wi, wo) · s(θh, θd, λ), the first term times `diffuse_shape` where there is
+/// one. `rho_s` holds ρ_s · (cosθi + cosθo) = ρ_s · 2 cosθh cosθd, which stays bounded at grazing (ADR 0005);
 /// node pairs below the horizon are filled from their nearest neighbour in phi_d, then theta_h.
 struct SeparatedTables {
   HalfDifferenceGrid grid;
   SpectralAxis axis;
-  std::vector<float> c_d;            ///< [axis], albedo of the Lambert lobe, >= 0
+  std::vector<float> c_d;  ///< [axis], albedo of the Lambert lobe, >= 0
+  /// [theta_h][theta_d][phi_d] in [0, 1], or empty: then the diffuse lobe is exactly Lambertian.
+  std::vector<float> diffuse_shape;
   std::vector<float> rho_s;          ///< [theta_h][theta_d][phi_d], >= 0 [1/sr]
   std::vector<float> s_sun;          ///< [axis], >= 0
   std::vector<float> s_fresnel;      ///< [theta_d][axis]
