@@ -22,14 +22,14 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spectrace separate irid_flake_paint2_spec.bsdf -o irid.sep\n"
     "  spectrace separate paper_white_rgb.bsdf -o paper.sep --report paper.json\n"
-    "  spectrace separate car.bsdf -o car.sep --weight printed --theta-h-spacing uniform\n"
+    "  spectrace separate car.bsdf -o car.sep --diffuse table\n"
     "\n"
     "OUT.sep holds all three models (sun, fresnel, diffraction). The report goes to standard output.\n"
     "Exit code 1: the fit is unusable, and OUT.sep is not written.";
 
 struct Arguments {
   std::string input, output, report;
-  std::string weight = "product", spacing = "quadratic";
+  std::string weight = "product", spacing = "quadratic", diffuse = "lambert", residual = "whole";
   int threads = 0;
 };
 
@@ -37,6 +37,8 @@ ExitCode separate_command(const Arguments& arguments) {
   SeparationOptions options;
   options.weight = arguments.weight == "product" ? CosineWeight::kProduct : CosineWeight::kPrinted;
   options.grid.quadratic_theta_h = arguments.spacing == "quadratic";
+  options.diffuse = arguments.diffuse == "lambert" ? DiffuseForm::kLambert : DiffuseForm::kTable;
+  options.residual = arguments.residual == "whole" ? SpectralResidual::kWhole : SpectralResidual::kPrinted;
   options.threads = arguments.threads;
 
   SilentProgress progress;
@@ -67,6 +69,16 @@ void add_separate(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--theta-h-spacing", arguments->spacing, "how the table spaces the half angle")
       ->check(CLI::IsMember({"quadratic", "uniform"}))
+      ->capture_default_str();
+  command
+      ->add_option("--diffuse", arguments->diffuse,
+                   "diffuse lobe: exactly Lambertian, or the table of eq. 16")
+      ->check(CLI::IsMember({"lambert", "table"}))
+      ->capture_default_str();
+  command
+      ->add_option("--residual", arguments->residual,
+                   "what eqs. 19 and 20 compare: the whole BRDF, or as printed")
+      ->check(CLI::IsMember({"whole", "printed"}))
       ->capture_default_str();
   command->add_option("--report", arguments->report, "also write the report as JSON");
   command->add_option("--threads", arguments->threads, "threads to use, 0 = all cores")

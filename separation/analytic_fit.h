@@ -29,6 +29,9 @@ FitEquations fit_equations(const CellTable& table, double epsilon, const FitVect
 
 struct AnalyticSolution {
   AnalyticFit fit;
+  /// Lambert alone explains the measurement as well as such a measurement can tell: no specular lobe, rho_0 =
+  /// 0.
+  bool matte = false;
   bool converged = false;
   double initial_cost = 0, final_cost = 0;
   double gradient_max = 0;  ///< of the cost per cell, projected on the bounds, infinity norm

@@ -60,12 +60,13 @@ class LogRoot {
   }
 
  private:
-  // The range of s, whose mean over the axis is about 1. Below kZero it is 0; its upper end no ratio of a
-  // wavelength to the mean reaches.
+  // The range of s, whose mean over the axis is about 1. Below kZero it is 0. Above 16 lie only cells whose
+  // rho_s is all but 0 (up to 250 were seen, where an exact Lambert lobe is brighter than the mean and darker
+  // than one channel); interpolation would multiply such an s with a neighbour's rho_s.
   static constexpr double kSmallest = 1e-6, kZero = 1e-4, kStart = 1e-2;
-  static constexpr double kHighest = 11.512925464970229;  // ln 1e5
-  static constexpr double kTolerance = 1e-5;              // of ln s; the samples carry 1e-7 of float rounding
-  static constexpr int kMaxIterations = 60;               // bisection alone needs 22 for the range
+  static constexpr double kHighest = 2.772588722239781;  // ln 16
+  static constexpr double kTolerance = 1e-5;             // of ln s; the samples carry 1e-7 of float rounding
+  static constexpr int kMaxIterations = 60;              // bisection alone needs 22 for the range
 
   void advance(int k, double gradient, double information) {
     const double s = double(s_[k]);

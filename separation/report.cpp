@@ -50,16 +50,24 @@ void write_options(JsonWriter& json, const SeparationOptions& options) {
   json.member("theta_d", options.grid.n_theta_d);
   json.member("phi_d", options.grid.n_phi_d);
   json.member("theta_h_spacing", spacing_of(options.grid));
-  json.member("weight", options.weight == CosineWeight::kProduct ? "product" : "printed");
+  json.member("weight", name_of(options.weight));
   json.member("epsilon", options.epsilon);
   json.member("eta_diffuse", options.eta_diffuse);
   json.member("eta_specular", options.eta_specular);
+  json.member("diffuse", name_of(options.diffuse));
+  json.member("residual", name_of(options.residual));
   json.member("starts", options.starts);
   json.member("diffraction_prior", options.diffraction_prior);
   json.end_object();
 }
 
 }  // namespace
+
+std::string name_of(CosineWeight weight) { return weight == CosineWeight::kProduct ? "product" : "printed"; }
+std::string name_of(DiffuseForm form) { return form == DiffuseForm::kLambert ? "lambert" : "table"; }
+std::string name_of(SpectralResidual residual) {
+  return residual == SpectralResidual::kWhole ? "whole" : "printed";
+}
 
 std::string SeparationReport::brief() const {
   if (!usable) return verdict;
@@ -87,13 +95,18 @@ std::string SeparationReport::full() const {
   if (!usable) return text;
   line("analytic fit", fmt::format("alpha_d {:.4f}, rho_0 {:.4g}, F_0 {:.4f}, a {:.4f}", fit.albedo_d,
                                    fit.rho_0, fit.f_0, fit.alpha));
+  if (matte) line("matte", "Lambert alone explains the measurement: no specular lobe");
   line("step 1", fmt::format("cost {:.6g} -> {:.6g} in {} iterations, gradient {:.1e} per cell",
                              step1_initial_cost, step1_final_cost, step1_iterations, step1_gradient_max));
-  line("step 2",
-       fmt::format("cost {:.6g}, specular share {:.2f} %, Lambert form costs {:.2f} % of the energy",
-                   step2_cost, 100 * specular_share, 100 * lambert_cost));
+  line("step 2", fmt::format("cost {:.6g}; {:.2f} % of the reflected light is specular", step2_cost,
+                             100 * specular_share));
+  line("diffuse lobe", fmt::format("{}; an exact Lambert lobe has {:.2f} % of the reflected light too much",
+                                   name_of(options.diffuse), 100 * lambert_cost));
   line("step 3", fmt::format("rms log residual: sun {:.4f}, fresnel {:.4f}, diffraction {:.4f}",
                              overall(rms_sun), overall(rms_fresnel), overall(rms_diffraction)));
+  line("residual", options.residual == SpectralResidual::kWhole
+                       ? "whole: eqs. 19 and 20 compare the whole BRDF, as eq. 18 does"
+                       : "printed: eqs. 19 and 20 compare what the diffuse lobe leaves, clamped at 0");
   line("seconds", fmt::format("table {:.2f}, step 1 {:.2f}, step 2 {:.2f}, step 3 {:.2f}", seconds_table,
                               seconds_step1, seconds_step2, seconds_step3));
   return text;
@@ -117,6 +130,7 @@ std::string SeparationReport::json(bool with_timings) const {
   json.member("negative_values", negative_values);
   json.key("analytic_fit");
   json.begin_object();
+  json.member("matte", matte);
   json.member("albedo_d", fit.albedo_d);
   json.member("rho_0", fit.rho_0);
   json.member("f_0", fit.f_0);

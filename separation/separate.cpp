@@ -58,6 +58,7 @@ void store(SpectralFit fit, SplitResult split, SeparationResult& result) {
   for (std::size_t k = 0; k < fit.s_d.size(); ++k) {
     tables.c_d[k] = static_cast<float>(double(fit.s_d[k]) * split.albedo_d);
   }
+  tables.diffuse_shape = std::move(split.diffuse_shape);
   tables.rho_s = std::move(split.rho_s);
   tables.s_sun = std::move(fit.s_sun);
   tables.s_fresnel = std::move(fit.s_fresnel);
@@ -83,6 +84,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   AnalyticSolution analytic;
   report.seconds_step1 = seconds([&] { analytic = fit_analytic(table, options); });
   report.fit = analytic.fit;
+  report.matte = analytic.matte;
   report.step1_initial_cost = analytic.initial_cost;
   report.step1_final_cost = analytic.final_cost;
   report.step1_gradient_max = analytic.gradient_max;
@@ -91,7 +93,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   if (!report.usable) return;
 
   SplitResult split;
-  report.seconds_step2 = seconds([&] { split = split_lobes(table, analytic.fit, options); });
+  report.seconds_step2 = seconds([&] { split = split_lobes(table, analytic.fit, analytic.matte, options); });
   report.step2_cost = split.cost;
   report.lambert_cost = split.lambert_cost;
   report.specular_share = split.specular_share;

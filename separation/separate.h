@@ -26,15 +26,29 @@ enum class SpectralResidual {
   kPrinted,  ///< ρ - s_d ρ_d, clamped at 0, with s ρ_s
 };
 
+/// The diffuse lobe of the result.
+enum class DiffuseForm {
+  kLambert,  ///< exactly c_d/π; where the measurement is darker than that, the result is too bright
+  kTable,    ///< the ρ_d of eq. 16: c_d/π, and no more than the measurement's mean
+};
+
+[[nodiscard]] std::string name_of(CosineWeight weight);        ///< "product", "printed"
+[[nodiscard]] std::string name_of(DiffuseForm form);           ///< "lambert", "table"
+[[nodiscard]] std::string name_of(SpectralResidual residual);  ///< "whole", "printed"
+
 struct SeparationOptions {
   HalfDifferenceGrid grid;  ///< paper: 90 x 90 x 180; spacing of theta_h: separation.md
   CosineWeight weight = CosineWeight::kProduct;
+  DiffuseForm diffuse = DiffuseForm::kLambert;
   SpectralResidual residual = SpectralResidual::kWhole;
   double epsilon = 1e-3;                         ///< of eqs. 9 and 10; > 0; paper: 1e-3
   double eta_diffuse = 0.9, eta_specular = 0.8;  ///< eq. 16; > 0; paper: 0.9, 0.8
   int starts = 4;                                ///< of step 1's solver, at least 1
-  double diffraction_prior = 5;  ///< samples' worth of s_F drawn into s_D where rho_s vanishes; >= 0
-  int threads = 0;               ///< 0 = all cores
+  /// Draws s_D to s_F where the data say nothing: counts so many samples where rho_s vanishes, and fades as
+  /// soon as the data of a cell are worth more; >= 0. Default: enough to decide what is undetermined, too
+  /// little to move the rest (docs/separation.md).
+  double diffraction_prior = 0.01;
+  int threads = 0;  ///< 0 = all cores
 
   /// Empty where valid, else which field breaks which rule.
   [[nodiscard]] std::string problem() const;
@@ -52,13 +66,14 @@ struct SeparationReport {
   bool usable = true;   ///< false: no cell was measured, or step 1 did not converge from any start
   std::string verdict;  ///< one line
   AnalyticFit fit;
+  bool matte = false;  ///< Lambert alone explains the measurement: there is no specular lobe
   double step1_initial_cost = 0, step1_final_cost = 0;  ///< ½ Σ (log residual)²
   double step1_gradient_max = 0;  ///< infinity norm of the projected gradient at the solution
   int step1_iterations = 0;
   double step2_cost = 0;  ///< eq. 16
-  /// Share of the energy Σ w ρ missing where mean < alpha_d/pi: what an exact Lambert lobe costs.
-  double lambert_cost = 0;
-  double specular_share = 0;  ///< of that energy
+  /// Of the light reflected under uniform light, averaged over the measured directions: how much an exact
+  /// Lambert lobe has too much (where mean < alpha_d/pi), and how much is specular.
+  double lambert_cost = 0, specular_share = 0;
   /// [axis] root mean square of ln(ρ w + ε) less ln(model w + ε) over the measured cells (eqs. 18-20).
   std::vector<double> rms_sun, rms_fresnel, rms_diffraction;
   double seconds_table = 0, seconds_step1 = 0, seconds_step2 = 0, seconds_step3 = 0;

@@ -175,7 +175,8 @@ LobeWeights lobe_weights(const CellTable& table, const SplitResult& split) {
   const double lambert = split.albedo_d / std::numbers::pi;
   for (std::size_t i = 0; i < table.fitted(); ++i) {
     const double w = double(table.weight[i]);
-    lobes.diffuse[i] = static_cast<float>(lambert * w);
+    const double shape = split.diffuse_shape.empty() ? 1.0 : double(split.diffuse_shape[table.cell[i]]);
+    lobes.diffuse[i] = static_cast<float>(lambert * shape * w);
     lobes.specular[i] = static_cast<float>(double(split.rho_s[table.cell[i]]) / table.cos_sum(i) * w);
   }
   return lobes;

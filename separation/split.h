@@ -18,11 +18,14 @@ struct SplitResult {
   /// [theta_h][theta_d][phi_d] as SeparatedTables::rho_s: ρ_s (cosθi + cosθo), >= 0, below the horizon
   /// filled.
   std::vector<float> rho_s;
-  double albedo_d = 0;        ///< of the Lambert lobe, alpha_d or exactly 0
-  double cost = 0;            ///< eq. 16 at the paper's optimum
-  double lambert_cost = 0;    ///< SeparationReport::lambert_cost
-  double specular_share = 0;  ///< of the energy Σ w ρ over the fitted cells
+  std::vector<float> diffuse_shape;  ///< as SeparatedTables::diffuse_shape; empty where exactly Lambertian
+  double albedo_d = 0;               ///< of the Lambert lobe, alpha_d or exactly 0
+  double cost = 0;                   ///< eq. 16 at the paper's optimum
+  double lambert_cost = 0;           ///< SeparationReport::lambert_cost
+  double specular_share = 0;         ///< SeparationReport::specular_share
 };
-SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, const SeparationOptions& options);
+/// `matte`: there is no specular lobe (AnalyticSolution::matte).
+SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, bool matte,
+                        const SeparationOptions& options);
 
 }  // namespace spectrace

@@ -88,6 +88,21 @@ TEST(AnalyticFit, RecoversTheParametersOfAnExactTable) {
   }
 }
 
+TEST(AnalyticFit, AMatteMaterialHasNoSpecularTerm) {
+  const SeparationOptions options = small_grid();
+  const AnalyticSolution matte = fit_analytic(
+      test::synthetic_cells(
+          options, [](double h, double, double, double) { return 0.1 * (1 + 0.03 * std::sin(9 * h)); }),
+      options);
+  EXPECT_TRUE(matte.matte);
+  EXPECT_EQ(matte.fit.rho_0, 0);
+  EXPECT_NEAR(matte.fit.albedo_d, 0.1 * std::numbers::pi, 0.01);
+  // A weak highlight is enough not to be matte.
+  EXPECT_FALSE(
+      fit_analytic(material({.albedo_d = 0.3, .rho_0 = 0.2, .f_0 = 0.04, .alpha = 0.2}, options), options)
+          .matte);
+}
+
 TEST(AnalyticFit, StaysInsideItsBoundsOnMaterialsTheModelCannotReach) {
   const SeparationOptions options = small_grid();
   for (double level : {0.0, 1e-6, 10.0}) {

@@ -50,7 +50,7 @@ TEST(Split, LambertPlusSpecularGivesTheMeanBackWhereItIsBrightEnough) {
   const CellTable table = test::synthetic_cells(options, [&](double h, double d, double i, double o) {
     return fit.albedo_d / kPiD + ggx_value(fit, h, d, i, o);
   });
-  const SplitResult split = split_lobes(table, fit, options);
+  const SplitResult split = split_lobes(table, fit, false, options);
   EXPECT_EQ(split.albedo_d, fit.albedo_d);
   EXPECT_LT(split.lambert_cost, 1e-6);  // float rounding of the table
   for (std::size_t i = 0; i < table.fitted(); ++i) {
@@ -65,7 +65,7 @@ TEST(Split, EveryNodeIsFilledAndThePolesDoNotDependOnAzimuth) {
   CellTable table =
       test::synthetic_cells(options, [](double h, double, double i, double) { return 0.1 + h * i; });
   ASSERT_GT(table.counts.below_horizon, 0U);
-  const SplitResult split = split_lobes(table, fit, options);
+  const SplitResult split = split_lobes(table, fit, false, options);
   EXPECT_TRUE(std::all_of(split.rho_s.begin(), split.rho_s.end(),
                           [](float x) { return std::isfinite(x) && x >= 0; }));
   for (int p = 1; p < options.grid.n_phi_d; ++p) {
@@ -80,7 +80,7 @@ TEST(Split, APurelyDiffuseMaterialHasNoSpecularLobeAtAll) {
   // 1e-5 of ripple, as interpolation leaves it
   const CellTable table = test::synthetic_cells(
       options, [](double h, double, double, double) { return 0.5 / kPiD * (1 + 1e-5 * std::sin(40 * h)); });
-  const SplitResult split = split_lobes(table, fit, options);
+  const SplitResult split = split_lobes(table, fit, false, options);
   EXPECT_TRUE(std::all_of(split.rho_s.begin(), split.rho_s.end(), [](float x) { return x == 0; }));
   EXPECT_EQ(split.albedo_d, 0.5);
 }
@@ -90,7 +90,7 @@ TEST(Split, APurelySpecularMaterialHasNoDiffuseLobeAtAll) {
   const AnalyticFit fit{.albedo_d = 1e-6, .rho_0 = 0.8, .f_0 = 0.9, .alpha = 0.3};
   const CellTable table = test::synthetic_cells(
       options, [&](double h, double d, double i, double o) { return ggx_value(fit, h, d, i, o); });
-  const SplitResult split = split_lobes(table, fit, options);
+  const SplitResult split = split_lobes(table, fit, false, options);
   EXPECT_EQ(split.albedo_d, 0);
   EXPECT_NEAR(split.specular_share, 1, 1e-12);
 }
