@@ -9,6 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/console_progress.h"
+#include "cli/output.h"
 #include "core/base/error.h"
 #include "materials/acquisition.h"
 
@@ -32,6 +33,7 @@ struct Arguments {
 };
 
 ExitCode acquire_command(const Arguments& arguments) {
+  require_folder_of(arguments.output);
   const MaterialDesc description = load_material(arguments.input);
   const Material material = build_material(description);
   AcquisitionOptions options = arguments.options;

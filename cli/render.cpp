@@ -13,6 +13,7 @@
 
 #include "cli/command.h"
 #include "cli/console_progress.h"
+#include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/error.h"
 
@@ -51,12 +52,7 @@ fs::path default_cache() {
 fs::path output_file(const Arguments& arguments) {
   const fs::path file =
       arguments.output.empty() ? fs::path(arguments.scene).stem().concat(".exr") : fs::path(arguments.output);
-  // Found out now, not after hours of rendering.
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) {
-    throw InputError(folder.string(), "", "is no folder to write to");
-  }
+  require_folder_of(file);
   return file;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/file.h"
 #include "materials/separated_tables.h"
@@ -34,6 +35,7 @@ struct Arguments {
 };
 
 ExitCode separate_command(const Arguments& arguments) {
+  require_folder_of(arguments.output);
   SeparationOptions options;
   options.weight = arguments.weight == "product" ? CosineWeight::kProduct : CosineWeight::kPrinted;
   options.grid.quadratic_theta_h = arguments.spacing == "quadratic";
