@@ -52,6 +52,36 @@ Pair locate_pair(const MeasuredBrdf& brdf, const DirectionPair& directions) {
   return pair;
 }
 
+/// Σ of the pair's rows times `row_mean`: the mean of q over the axis.
+double mean_of(const Pair& pair, const std::vector<float>& row_mean) {
+  double q = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (int n = 0; n < pair.footprint[i].count; ++n) {
+      q += pair.scale[i] * double(pair.footprint[i].weight[n]) * double(row_mean[pair.footprint[i].row[n]]);
+    }
+  }
+  return q;
+}
+
+void add_fitted(CellTable& slice, std::size_t cell, const DirectionPair& directions, const Pair& pair,
+                double mean_q, const SeparationOptions& options) {
+  const double cos_i = directions.wi.z, cos_o = directions.wo.z;
+  const double weight = cosine_weight(cos_i, cos_o, options);
+  slice.cell.push_back(static_cast<std::uint32_t>(cell));
+  slice.cos_i.push_back(static_cast<float>(cos_i));
+  slice.cos_o.push_back(static_cast<float>(cos_o));
+  slice.weight.push_back(static_cast<float>(weight));
+  slice.mean.push_back(static_cast<float>(mean_q / (cos_i + cos_o)));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double scale = pair.scale[i] * weight / (cos_i + cos_o);
+    for (int n = 0; n < pair.footprint[i].count && scale > 0; ++n) {
+      slice.node_row.push_back(pair.footprint[i].row[n]);
+      slice.node_weight.push_back(static_cast<float>(scale * double(pair.footprint[i].weight[n])));
+    }
+  }
+  slice.node_begin.push_back(static_cast<std::uint32_t>(slice.node_row.size()));
+}
+
 /// The cells of one theta_h: slices are filled in parallel and joined in order.
 void fill_slice(const MeasuredBrdf& brdf, const SeparationOptions& options,
                 const std::vector<float>& row_mean, int h, CellTable& slice, float* mean_q) {
@@ -69,34 +99,14 @@ void fill_slice(const MeasuredBrdf& brdf, const SeparationOptions& options,
         continue;
       }
       const Pair pair = locate_pair(brdf, directions);
-      double q = 0;
-      for (std::size_t i = 0; i < 2; ++i) {
-        for (int n = 0; n < pair.footprint[i].count; ++n) {
-          q += pair.scale[i] * double(pair.footprint[i].weight[n]) *
-               double(row_mean[pair.footprint[i].row[n]]);
-        }
-      }
+      const double q = mean_of(pair, row_mean);
       if (pair.any) mean_q[cell] = static_cast<float>(q);
-      if (!pair.measured) {
+      if (pair.measured) {
+        ++slice.counts.measured;
+        add_fitted(slice, cell, directions, pair, q, options);
+      } else {
         ++(pair.extrapolated ? slice.counts.extrapolated : slice.counts.unmeasured);
-        continue;
       }
-      ++slice.counts.measured;
-      const double cos_i = directions.wi.z, cos_o = directions.wo.z;
-      const double weight = cosine_weight(cos_i, cos_o, options);
-      slice.cell.push_back(static_cast<std::uint32_t>(cell));
-      slice.cos_i.push_back(static_cast<float>(cos_i));
-      slice.cos_o.push_back(static_cast<float>(cos_o));
-      slice.weight.push_back(static_cast<float>(weight));
-      slice.mean.push_back(static_cast<float>(q / (cos_i + cos_o)));
-      for (std::size_t i = 0; i < 2; ++i) {
-        const double scale = pair.scale[i] * weight / (cos_i + cos_o);
-        for (int n = 0; n < pair.footprint[i].count && scale > 0; ++n) {
-          slice.node_row.push_back(pair.footprint[i].row[n]);
-          slice.node_weight.push_back(static_cast<float>(scale * double(pair.footprint[i].weight[n])));
-        }
-      }
-      slice.node_begin.push_back(static_cast<std::uint32_t>(slice.node_row.size()));
     }
   }
 }
