@@ -33,8 +33,8 @@ MeasuredTables acquired(const std::string& extra, const std::string& reflectance
   document.throw_if_wrong();
   AcquisitionOptions options;
   options.lambda_nm = kFewWavelengths;
-  // Finer than the real files' grids (8, 32), through which a perfect Lambert already comes back 5 % off: what
-  // is tested is the separation, not the measurement (docs/separation.md has the figures of both).
+  // Finer than the real files' grids (8, 32), through which a perfect Lambert already comes back 5 % off:
+  // what is tested is the separation, not the measurement (docs/separation.md has the figures of both).
   options.elevations = 24;
   options.table_size = 96;
   SilentProgress progress;
