@@ -15,13 +15,15 @@
 #include "materials/glossy.h"
 #include "materials/lambert.h"
 #include "materials/measured_brdf.h"
+#include "materials/paired_brdf.h"
 #include "materials/separated_brdf.h"
+#include "materials/tabulated_brdf.h"
 
 namespace spectrace {
 
 /// Visited once a path vertex; immutable, shared between threads.
-using Material =
-    std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, MeasuredBrdf, SeparatedBrdf>;
+using Material = std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, MeasuredBrdf,
+                              SeparatedBrdf, TabulatedBrdf, PairedBrdf>;
 
 [[nodiscard]] BsdfValue evaluate(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
 [[nodiscard]] LobeValues evaluate_lobes(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);

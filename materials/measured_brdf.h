@@ -28,7 +28,7 @@ class MeasuredBrdf {
   struct Footprint {
     static constexpr int kMaxNodes = 16;
     std::array<std::uint32_t, kMaxNodes> row{};  ///< index of a spectrum, contiguous over the axis
-    std::array<float, kMaxNodes> weight{};       ///< includes ndf / (4 sigma): Σ weight · spectrum = f·cosθi
+    std::array<float, kMaxNodes> weight{};  ///< includes ndf / (4 sigma): Σ weight · spectrum = f·cosθi
     int count = 0;
     bool extrapolated = false;  ///< wo lies beyond the last measured elevation
     bool measured = false;      ///< at least half the weight lies on cells marked valid and not extrapolated

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/math/math.h"
 #include "materials/half_difference.h"
+#include "materials/lambert.h"
 #include "materials/separated_sampler.h"
 
 namespace spectrace {
@@ -18,11 +19,6 @@ namespace {
 constexpr Float kCosineShare = Float(0.05);
 // Neither of two lobes that hold energy is chosen less often: the albedo table is a coarse quadrature.
 constexpr Float kMinLobeShare = Float(0.02);
-
-Vec3 sample_cosine(Vec2 u) {
-  const Float r = safe_sqrt(u.x), phi = 2 * kPi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), safe_sqrt(1 - u.x)};
-}
 
 Float interpolate(const std::vector<float>& table, const GridPoint& point) {
   Float sum = 0;
@@ -155,7 +151,7 @@ std::optional<BsdfSample> SeparatedBrdf::sample(Vec3 wo, const BsdfRandom& u, co
   const bool specular = u.lobe < share || share == 1;
   const bool by_table = u.lobe < share * (1 - kCosineShare);
   const std::optional<Vec3> wi =
-      by_table ? data_->sampler.sample(wo, u.direction) : sample_cosine(u.direction);
+      by_table ? data_->sampler.sample(wo, u.direction) : sample_cosine_hemisphere(u.direction);
   if (!wi || !(wi->z > 0)) return std::nullopt;
 
   const BsdfValue value = evaluate(wo, *wi, at);

@@ -28,10 +28,10 @@ class SpectralAxis {
 
   /// Where each lane falls; computed once a lookup, then applied to any number of table rows.
   struct Lookup {
-    std::array<std::array<Float, 3>, kLanes> rgb{};    // RGB: the basis at each lane
-    std::array<std::uint32_t, kLanes> index{};         // wavelengths: the lower neighbour
-    std::array<Float, kLanes> fraction{};              // and how far towards the upper one
-    std::uint32_t upper = 0;                           // its distance: 1, or 0 for a single wavelength
+    std::array<std::array<Float, 3>, kLanes> rgb{};  // RGB: the basis at each lane
+    std::array<std::uint32_t, kLanes> index{};       // wavelengths: the lower neighbour
+    std::array<Float, kLanes> fraction{};            // and how far towards the upper one
+    std::uint32_t upper = 0;                         // its distance: 1, or 0 for a single wavelength
     bool is_rgb = false;
     /// Σ over the axis of row[k] times this lane's weights. `row` has size() values.
     [[nodiscard]] SampledSpectrum apply(const float* row) const;

@@ -2,58 +2,17 @@
 #include "separation/cell_table.h"
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <utility>
 
 #include "materials/half_difference.h"
 #include "separation/parallel.h"
+#include "separation/reciprocal_pair.h"
 
 namespace spectrace {
 namespace {
 
-// Where only one order of a pair was measured, f̂ = v1 / cosθi, and the other direction lies beyond the last
-// measured elevation (78 to 85 degrees in the EPFL files). Nearer the horizon than this the quotient is noise
-// divided by nothing (hard case H3), and the average over both orders, which needs no quotient, takes over.
-constexpr double kMinSingleOrderCosine = 0.05;
-
-/// Rows and weights whose sum is q = f̂ (cosθi + cosθo) at a pair of directions.
-struct Pair {
-  std::array<MeasuredBrdf::Footprint, 2> footprint;
-  std::array<double, 2> scale{};
-  bool measured = false, extrapolated = false, any = false;
-};
-
-/// v1 = f(wo, wi) cosθi and v2 = f(wi, wo) cosθo are what the file holds, so q = v1 + v2 is the
-/// cosine-weighted mean of both orders: no division, bounded at grazing.
-Pair locate_pair(const MeasuredBrdf& brdf, const DirectionPair& directions) {
-  Pair pair;
-  const std::array<std::optional<MeasuredBrdf::Footprint>, 2> orders{
-      brdf.footprint(directions.wo, directions.wi), brdf.footprint(directions.wi, directions.wo)};
-  const std::array<double, 2> cosine{directions.wi.z, directions.wo.z};  // what each order is multiplied by
-  bool all_extrapolated = true;
-  std::array<bool, 2> measured{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!orders[i]) continue;
-    pair.any = true;
-    pair.footprint[i] = *orders[i];
-    pair.scale[i] = 1;
-    measured[i] = orders[i]->measured;
-    all_extrapolated = all_extrapolated && orders[i]->extrapolated;
-  }
-  pair.measured = measured[0] || measured[1];
-  pair.extrapolated = pair.any && all_extrapolated;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (measured[i] && !measured[1 - i] && cosine[i] >= kMinSingleOrderCosine) {
-      pair.scale[i] = (cosine[0] + cosine[1]) / cosine[i];
-      pair.scale[1 - i] = 0;
-    }
-  }
-  return pair;
-}
-
 /// Σ of the pair's rows times `row_mean`: the mean of q over the axis.
-double mean_of(const Pair& pair, const std::vector<float>& row_mean) {
+double mean_of(const ReciprocalPair& pair, const std::vector<float>& row_mean) {
   double q = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     for (int n = 0; n < pair.footprint[i].count; ++n) {
@@ -63,8 +22,8 @@ double mean_of(const Pair& pair, const std::vector<float>& row_mean) {
   return q;
 }
 
-void add_fitted(CellTable& slice, std::size_t cell, const DirectionPair& directions, const Pair& pair,
-                double mean_q, const SeparationOptions& options) {
+void add_fitted(CellTable& slice, std::size_t cell, const DirectionPair& directions,
+                const ReciprocalPair& pair, double mean_q, const SeparationOptions& options) {
   const double cos_i = directions.wi.z, cos_o = directions.wo.z;
   const double weight = cosine_weight(cos_i, cos_o, options);
   slice.cell.push_back(static_cast<std::uint32_t>(cell));
@@ -98,7 +57,7 @@ void fill_slice(const MeasuredBrdf& brdf, const SeparationOptions& options,
         ++slice.counts.below_horizon;
         continue;
       }
-      const Pair pair = locate_pair(brdf, directions);
+      const ReciprocalPair pair = locate_pair(brdf, directions);
       const double q = mean_of(pair, row_mean);
       if (pair.any) mean_q[cell] = static_cast<float>(q);
       if (pair.measured) {

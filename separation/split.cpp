@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "separation/analytic_fit.h"
+#include "separation/fill_grid.h"
 
 namespace spectrace {
 namespace {
@@ -61,54 +62,6 @@ double optimum_cost(const CellTable& table, const AnalyticFit& fit, const Separa
   return cost;
 }
 
-/// Below the horizon: the nearest node in phi_d, which is never far, because at phi_d = 90 degrees both
-/// directions of a pair stand at cosθh cosθd > 0.
-void fill_below_horizon(const HalfDifferenceGrid& grid, std::vector<float>& rho_s) {
-  const int n = grid.n_phi_d;
-  for (std::size_t group = 0; group < grid.angular_size(); ++group) {
-    float* row = &rho_s[group * n];
-    std::vector<float> filled(row, row + n);
-    for (int p = 0; p < n; ++p) {
-      for (int step = 1; filled[p] < 0 && step <= n / 2; ++step) {
-        const float before = row[(p + n - step) % n], after = row[(p + step) % n];
-        if (before >= 0 && after >= 0) {
-          filled[p] = (before + after) / 2;
-        } else if (before >= 0 || after >= 0) {
-          filled[p] = std::max(before, after);
-        }
-      }
-    }
-    std::copy(filled.begin(), filled.end(), row);
-  }
-}
-
-/// Rows still without any value take the nearest theta_h.
-void fill_empty_rows(const HalfDifferenceGrid& grid, std::vector<float>& rho_s) {
-  for (int d = 0; d < grid.n_theta_d; ++d) {
-    for (int p = 0; p < grid.n_phi_d; ++p) {
-      float last = 0;
-      for (int h = 0; h < grid.n_theta_h; ++h) {
-        float& value = rho_s[grid.index(h, d, p)];
-        if (value < 0) value = last;
-        last = value;
-      }
-    }
-  }
-}
-
-/// phi_d means nothing at theta_h = 0 and at theta_d = 0: one value there, so that lookups are continuous and
-/// independent of azimuth (hard case H5).
-void average_poles(const HalfDifferenceGrid& grid, std::vector<float>& rho_s) {
-  const auto average = [&](std::size_t group) {
-    float* row = &rho_s[group * grid.n_phi_d];
-    double sum = 0;
-    for (int p = 0; p < grid.n_phi_d; ++p) sum += double(row[p]);
-    std::fill(row, row + grid.n_phi_d, static_cast<float>(sum / grid.n_phi_d));
-  };
-  for (int d = 0; d < grid.n_theta_d; ++d) average(std::size_t(d));
-  for (int h = 1; h < grid.n_theta_h; ++h) average(std::size_t(h) * grid.n_theta_d);
-}
-
 /// min(mean, Lambert) / Lambert: ρ_d of eq. 16 where eta_d > eta_s.
 std::vector<float> diffuse_table(const CellTable& table, double lambert) {
   const HalfDifferenceGrid& grid = table.grid;
@@ -120,9 +73,7 @@ std::vector<float> diffuse_table(const CellTable& table, double lambert) {
     const float mean = table.mean_q[cell];
     shape[cell] = mean < 0 ? -1.0F : static_cast<float>(std::min(double(mean) / lambert_q, 1.0));
   }
-  fill_below_horizon(grid, shape);
-  fill_empty_rows(grid, shape);
-  average_poles(grid, shape);
+  fill_unmeasured(grid, shape);
   return shape;
 }
 
@@ -141,9 +92,7 @@ std::vector<float> specular_table(const CellTable& table, double lambert) {
       }
     }
   }
-  fill_below_horizon(grid, rho_s);
-  fill_empty_rows(grid, rho_s);
-  average_poles(grid, rho_s);
+  fill_unmeasured(grid, rho_s);
   return rho_s;
 }
 

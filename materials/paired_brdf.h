@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The values of one BRDF on the directions another draws: images of two descriptions of one material then
+// share every random decision, and their difference is the materials' own, not noise.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "materials/bsdf.h"
+#include "materials/measured_brdf.h"
+#include "materials/separated_brdf.h"
+#include "materials/tabulated_brdf.h"
+
+namespace spectrace {
+
+class PairedBrdf {
+ public:
+  using Values = std::variant<MeasuredBrdf, TabulatedBrdf, SeparatedBrdf>;
+  /// `directions` reaches every direction (a separated material does: it always draws some by the cosine), so
+  /// the estimate stays unbiased whatever `values` is. A path is the same for all `values` as long as Russian
+  /// roulette, which follows the throughput, is off.
+  PairedBrdf(Values values, SeparatedBrdf directions);
+
+  [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
+  [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
+  [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
+  [[nodiscard]] bool is_delta() const { return false; }
+
+ private:
+  Values values_;
+  SeparatedBrdf directions_;
+};
+
+static_assert(Bsdf<PairedBrdf>);
+
+}  // namespace spectrace

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "materials/tabulated_brdf.h"
+
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/math/math.h"
+#include "materials/lambert.h"
+
+namespace spectrace {
+
+TabulatedBrdf::TabulatedBrdf(std::shared_ptr<const HalfDifferenceTable> table) : table_(std::move(table)) {
+  SPECTRACE_CHECK(table_ != nullptr && table_->q.size() == table_->grid.size() * table_->axis.size());
+}
+
+BsdfValue TabulatedBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  if (!(wo.z > 0 && wi.z > 0)) return {};
+  const SpectralAxis::Lookup lookup = table_->axis.lookup(at.lambda);
+  const GridPoint point = table_->grid.locate(to_half_difference(wo, wi));
+  BsdfValue result{.value_cos = {}, .pdf = wi.z * kInvPi};
+  for (std::size_t i = 0; i < point.cell.size(); ++i) {
+    result.value_cos +=
+        lookup.apply(&table_->q[point.cell[i] * table_->axis.size()]) * Float(point.cell_weight[i]);
+  }
+  result.value_cos = result.value_cos * (wi.z / (wi.z + wo.z));
+  return result;
+}
+
+LobeValues TabulatedBrdf::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  return {.diffuse = {}, .fresnel = evaluate(wo, wi, at).value_cos, .diffraction = {}};
+}
+
+std::optional<BsdfSample> TabulatedBrdf::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
+  if (!(wo.z > 0)) return std::nullopt;
+  const Vec3 wi = sample_cosine_hemisphere(u.direction);
+  const BsdfValue value = evaluate(wo, wi, at);
+  if (!(value.pdf > 0)) return std::nullopt;
+  return BsdfSample{
+      .wi = wi, .weight = value.value_cos / value.pdf, .pdf = value.pdf, .lobe = Lobe::kSpecular};
+}
+
+}  // namespace spectrace

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "separation/fill_grid.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace spectrace {
+namespace {
+
+/// Below the horizon: the nearest node in phi_d, which is never far, because at phi_d = 90 degrees both
+/// directions of a pair stand at cosθh cosθd > 0.
+void fill_below_horizon(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+  const int n = grid.n_phi_d;
+  for (std::size_t group = 0; group < grid.angular_size(); ++group) {
+    float* row = &table[group * n];
+    std::vector<float> filled(row, row + n);
+    for (int p = 0; p < n; ++p) {
+      for (int step = 1; filled[p] < 0 && step <= n / 2; ++step) {
+        const float before = row[(p + n - step) % n], after = row[(p + step) % n];
+        if (before >= 0 && after >= 0) {
+          filled[p] = (before + after) / 2;
+        } else if (before >= 0 || after >= 0) {
+          filled[p] = std::max(before, after);
+        }
+      }
+    }
+    std::copy(filled.begin(), filled.end(), row);
+  }
+}
+
+/// Rows still without any value take the nearest theta_h.
+void fill_empty_rows(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+  for (int d = 0; d < grid.n_theta_d; ++d) {
+    for (int p = 0; p < grid.n_phi_d; ++p) {
+      float last = 0;
+      for (int h = 0; h < grid.n_theta_h; ++h) {
+        float& value = table[grid.index(h, d, p)];
+        if (value < 0) value = last;
+        last = value;
+      }
+    }
+  }
+}
+
+/// phi_d means nothing at theta_h = 0 and at theta_d = 0: one value there, so that lookups are continuous and
+/// independent of azimuth (hard case H5).
+void average_poles(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+  const auto average = [&](std::size_t group) {
+    float* row = &table[group * grid.n_phi_d];
+    double sum = 0;
+    for (int p = 0; p < grid.n_phi_d; ++p) sum += double(row[p]);
+    std::fill(row, row + grid.n_phi_d, static_cast<float>(sum / grid.n_phi_d));
+  };
+  for (int d = 0; d < grid.n_theta_d; ++d) average(std::size_t(d));
+  for (int h = 1; h < grid.n_theta_h; ++h) average(std::size_t(h) * grid.n_theta_d);
+}
+
+}  // namespace
+
+void fill_unmeasured(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+  fill_below_horizon(grid, table);
+  fill_empty_rows(grid, table);
+  average_poles(grid, table);
+}
+
+}  // namespace spectrace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Both orders of a pair of directions, looked up in a measurement and averaged.
+#pragma once
+
+#include <array>
+
+#include "materials/half_difference.h"
+#include "materials/measured_brdf.h"
+
+namespace spectrace {
+
+/// Rows and weights whose sum is q = f̂ (cosθi + cosθo) at a pair of directions above the horizon, f̂ the mean
+/// of both orders.
+struct ReciprocalPair {
+  std::array<MeasuredBrdf::Footprint, 2> footprint;
+  std::array<double, 2> scale{};  ///< of each footprint's weights
+  bool measured = false;          ///< in at least one order
+  bool extrapolated = false;      ///< beyond the last measured elevation in every order there is
+  bool any = false;               ///< at least one order holds a value
+};
+
+ReciprocalPair locate_pair(const MeasuredBrdf& measured, const DirectionPair& directions);
+
+}  // namespace spectrace

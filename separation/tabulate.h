@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// A measurement interpolated onto the paper's table X (sec. 4.1), at every wavelength.
+#pragma once
+
+#include "materials/tabulated_brdf.h"
+#include "separation/separate.h"
+
+namespace spectrace {
+
+/// Both orders of each pair averaged; nodes without a pair filled as rho_s is. size() · axis floats: 1.1 GB
+/// for the paper's grid at 195 wavelengths. Of `options` the grid and the threads count.
+HalfDifferenceTable tabulate(const MeasuredBrdf& measured, const SeparationOptions& options);
+
+}  // namespace spectrace
