@@ -30,7 +30,8 @@ constexpr const char* kExamples =
 
 struct Arguments {
   std::string input, output, report;
-  std::string weight = "product", spacing = "quadratic", diffuse = "lambert", residual = "whole";
+  std::string weight = "product", spacing = "quadratic", diffuse = "lambert", residual = "whole",
+              colour = "dark";
   int threads = 0;
 };
 
@@ -41,6 +42,7 @@ ExitCode separate_command(const Arguments& arguments) {
   options.grid.quadratic_theta_h = arguments.spacing == "quadratic";
   options.diffuse = arguments.diffuse == "lambert" ? DiffuseForm::kLambert : DiffuseForm::kTable;
   options.residual = arguments.residual == "whole" ? SpectralResidual::kWhole : SpectralResidual::kPrinted;
+  options.colour = arguments.colour == "dark" ? DiffuseColour::kDark : DiffuseColour::kPrinted;
   options.threads = arguments.threads;
 
   SilentProgress progress;
@@ -76,6 +78,11 @@ void add_separate(CLI::App& app, Action& chosen) {
       ->add_option("--diffuse", arguments->diffuse,
                    "diffuse lobe: exactly Lambertian, or the table of eq. 16")
       ->check(CLI::IsMember({"lambert", "table"}))
+      ->capture_default_str();
+  command
+      ->add_option("--diffuse-colour", arguments->colour,
+                   "read where the specular lobe is weakest, or from eqs. 7 and 18 as printed")
+      ->check(CLI::IsMember({"dark", "printed"}))
       ->capture_default_str();
   command
       ->add_option("--residual", arguments->residual,

@@ -54,6 +54,7 @@ void write_options(JsonWriter& json, const SeparationOptions& options) {
   json.member("epsilon", options.epsilon);
   json.member("eta_diffuse", options.eta_diffuse);
   json.member("eta_specular", options.eta_specular);
+  json.member("colour", name_of(options.colour));
   json.member("diffuse", name_of(options.diffuse));
   json.member("residual", name_of(options.residual));
   json.member("starts", options.starts);
@@ -64,6 +65,7 @@ void write_options(JsonWriter& json, const SeparationOptions& options) {
 }  // namespace
 
 std::string name_of(CosineWeight weight) { return weight == CosineWeight::kProduct ? "product" : "printed"; }
+std::string name_of(DiffuseColour colour) { return colour == DiffuseColour::kDark ? "dark" : "printed"; }
 std::string name_of(DiffuseForm form) { return form == DiffuseForm::kLambert ? "lambert" : "table"; }
 std::string name_of(SpectralResidual residual) {
   return residual == SpectralResidual::kWhole ? "whole" : "printed";
@@ -98,6 +100,9 @@ std::string SeparationReport::full() const {
   if (matte) line("matte", "Lambert alone explains the measurement: no specular lobe");
   line("step 1", fmt::format("cost {:.6g} -> {:.6g} in {} iterations, gradient {:.1e} per cell",
                              step1_initial_cost, step1_final_cost, step1_iterations, step1_gradient_max));
+  line("diffuse colour",
+       fmt::format("mean {:.4f}, {}", albedo_d,
+                   dark_colour ? "read where the specular lobe is weakest" : "of eqs. 7 and 18"));
   line("step 2", fmt::format("cost {:.6g}; {:.2f} % of the reflected light is specular", step2_cost,
                              100 * specular_share));
   line("diffuse lobe", fmt::format("{}; an exact Lambert lobe has {:.2f} % of the reflected light too much",
@@ -140,6 +145,8 @@ std::string SeparationReport::json(bool with_timings) const {
   json.member("step1_final_cost", step1_final_cost);
   json.member("step1_gradient_max", step1_gradient_max);
   json.member("step1_iterations", step1_iterations);
+  json.member("dark_colour", dark_colour);
+  json.member("albedo_d_mean", albedo_d);
   json.member("step2_cost", step2_cost);
   json.member("specular_share", specular_share);
   json.member("lambert_cost", lambert_cost);

@@ -26,6 +26,12 @@ enum class SpectralResidual {
   kPrinted,  ///< ρ - s_d ρ_d, clamped at 0, with s ρ_s
 };
 
+/// Where the level and the spectrum of the diffuse lobe come from.
+enum class DiffuseColour {
+  kDark,     ///< from where the specular lobe is weakest (separation/diffuse_colour.h)
+  kPrinted,  ///< the level from eq. 7, the spectrum from eq. 18
+};
+
 /// The diffuse lobe of the result.
 enum class DiffuseForm {
   kLambert,  ///< exactly c_d/π; where the measurement is darker than that, the result is too bright
@@ -33,12 +39,14 @@ enum class DiffuseForm {
 };
 
 [[nodiscard]] std::string name_of(CosineWeight weight);        ///< "product", "printed"
+[[nodiscard]] std::string name_of(DiffuseColour colour);       ///< "dark", "printed"
 [[nodiscard]] std::string name_of(DiffuseForm form);           ///< "lambert", "table"
 [[nodiscard]] std::string name_of(SpectralResidual residual);  ///< "whole", "printed"
 
 struct SeparationOptions {
   HalfDifferenceGrid grid;  ///< paper: 90 x 90 x 180; spacing of theta_h: separation.md
   CosineWeight weight = CosineWeight::kProduct;
+  DiffuseColour colour = DiffuseColour::kDark;
   DiffuseForm diffuse = DiffuseForm::kLambert;
   SpectralResidual residual = SpectralResidual::kWhole;
   double epsilon = 1e-3;                         ///< of eqs. 9 and 10; > 0; paper: 1e-3
@@ -70,7 +78,9 @@ struct SeparationReport {
   double step1_initial_cost = 0, step1_final_cost = 0;  ///< ½ Σ (log residual)²
   double step1_gradient_max = 0;  ///< infinity norm of the projected gradient at the solution
   int step1_iterations = 0;
-  double step2_cost = 0;  ///< eq. 16
+  bool dark_colour = false;  ///< c_d was read where the specular lobe is weakest
+  double albedo_d = 0;       ///< mean of c_d over the axis: what steps 2 and 3 took for alpha_d
+  double step2_cost = 0;     ///< eq. 16
   /// Of the light reflected under uniform light, averaged over the measured directions: how much an exact
   /// Lambert lobe has too much (where mean < alpha_d/pi), and how much is specular.
   double lambert_cost = 0, specular_share = 0;

@@ -63,6 +63,31 @@ void add_samples(const Context<B>& c, std::size_t group, const std::array<float,
   c.whole ? add_samples<B, true>(c, group, s, sums) : add_samples<B, false>(c, group, s, sums);
 }
 
+/// eq. 18 where s_d is known already: one unknown per wavelength.
+template <int B>
+void fit_sun(Context<B>& c) {
+  const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
+  std::array<float, B> start{};
+  start.fill(1);
+  LogRoot<B> root(start, c.count, 0, c.epsilon);
+  std::vector<LogRootSums<B>> slices(n_h);
+  while (!root.done()) {
+    parallel_chunks(n_h, [&](std::size_t h) {
+      slices[h] = {};
+      for (std::size_t d = 0; d < n_d; ++d) add_samples<B>(c, h * n_d + d, root.at(), slices[h]);
+    });
+    LogRootSums<B> sums;
+    for (const LogRootSums<B>& slice : slices) {
+      for (int k = 0; k < B; ++k) {
+        sums.gradient[k] += slice.gradient[k];
+        sums.information[k] += slice.information[k];
+      }
+    }
+    root.step(sums);
+  }
+  c.s_sun = root.result();
+}
+
 /// eq. 19: one unknown per (theta_d, wavelength), drawn towards s_sun.
 template <int B>
 void fit_fresnel(const Context<B>& c, SpectralFit& fit, std::size_t axis_size) {
@@ -145,7 +170,8 @@ void measure_residuals(const Context<B>& c, SpectralFit& fit, std::size_t axis_s
 
 template <int B>
 void fit_blocks(const MeasuredBrdf& measured, const CellTable& table, const LobeWeights& lobes,
-                const SeparationOptions& options, Progress& progress, SpectralFit& fit) {
+                const std::vector<float>& s_d, const SeparationOptions& options, Progress& progress,
+                SpectralFit& fit) {
   const std::size_t n = measured.axis().size();
   Context<B> c{.table = table,
                .lobes = lobes,
@@ -157,11 +183,16 @@ void fit_blocks(const MeasuredBrdf& measured, const CellTable& table, const Lobe
     c.first = first;
     c.count = static_cast<int>(std::min<std::size_t>(B, n - first));
     c.block.fill(measured, table, first, c.count);
-    const TwoLobes<B> two = fit_two_lobes<B>(table, lobes, c.block, c.count, options.epsilon);
-    c.s_d = two.s_d;
-    c.s_sun = two.s_s;
-    std::copy_n(two.s_d.begin(), c.count, &fit.s_d[first]);
-    std::copy_n(two.s_s.begin(), c.count, &fit.s_sun[first]);
+    if (s_d.empty()) {
+      const TwoLobes<B> two = fit_two_lobes<B>(table, lobes, c.block, c.count, options.epsilon);
+      c.s_d = two.s_d;
+      c.s_sun = two.s_s;
+    } else {
+      std::copy_n(&s_d[first], c.count, c.s_d.begin());
+      fit_sun(c);
+    }
+    std::copy_n(c.s_d.begin(), c.count, &fit.s_d[first]);
+    std::copy_n(c.s_sun.begin(), c.count, &fit.s_sun[first]);
     fit_fresnel(c, fit, n);
     fit_diffraction(c, fit, n);
     measure_residuals(c, fit, n);
@@ -185,7 +216,7 @@ LobeWeights lobe_weights(const CellTable& table, const SplitResult& split) {
 }  // namespace
 
 SpectralFit fit_spectra(const MeasuredBrdf& measured, const CellTable& table, const SplitResult& split,
-                        const SeparationOptions& options, Progress& progress) {
+                        const std::vector<float>& s_d, const SeparationOptions& options, Progress& progress) {
   const std::size_t n = measured.axis().size();
   SpectralFit fit{.s_d = std::vector<float>(n),
                   .s_sun = std::vector<float>(n),
@@ -197,9 +228,9 @@ SpectralFit fit_spectra(const MeasuredBrdf& measured, const CellTable& table, co
   if (table.fitted() == 0) return fit;
   const LobeWeights lobes = lobe_weights(table, split);
   if (n <= 4) {
-    fit_blocks<4>(measured, table, lobes, options, progress, fit);
+    fit_blocks<4>(measured, table, lobes, s_d, options, progress, fit);
   } else {
-    fit_blocks<16>(measured, table, lobes, options, progress, fit);
+    fit_blocks<16>(measured, table, lobes, s_d, options, progress, fit);
   }
   return fit;
 }

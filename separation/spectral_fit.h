@@ -21,9 +21,10 @@ struct SpectralFit {
   std::vector<double> rms_sun, rms_fresnel, rms_diffraction;
 };
 
-/// Solves the three problems one after the other, a block of wavelengths at a time. Runs in parallel; the
+/// Solves the three problems one after the other, a block of wavelengths at a time. `s_d`: [axis] where the
+/// diffuse colour is known already, else empty. Runs in parallel; the
 /// same for any number of threads.
 SpectralFit fit_spectra(const MeasuredBrdf& measured, const CellTable& table, const SplitResult& split,
-                        const SeparationOptions& options, Progress& progress);
+                        const std::vector<float>& s_d, const SeparationOptions& options, Progress& progress);
 
 }  // namespace spectrace

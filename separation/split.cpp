@@ -103,6 +103,11 @@ double split_cell(double mean, double diffuse, double specular, double eta_diffu
   return std::clamp(optimum, 0.0, mean);
 }
 
+double lambert_excess(const CellTable& table, double albedo) {
+  const Energies e = energies(table, albedo / std::numbers::pi);
+  return e.total > 0 ? e.missing / e.total : 0;
+}
+
 SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, bool matte,
                         const SeparationOptions& options) {
   SplitResult result;

@@ -14,6 +14,11 @@ namespace spectrace {
 /// one nearest `diffuse`. All arguments >= 0.
 double split_cell(double mean, double diffuse, double specular, double eta_diffuse, double eta_specular);
 
+/// Of the light reflected under uniform light, averaged over the measured directions: the share that a
+/// Lambert lobe of this albedo has too much, where the measured mean is below albedo/π. 0 for a black
+/// measurement.
+double lambert_excess(const CellTable& table, double albedo);
+
 struct SplitResult {
   /// [theta_h][theta_d][phi_d] as SeparatedTables::rho_s: ρ_s (cosθi + cosθo), >= 0, below the horizon
   /// filled.
