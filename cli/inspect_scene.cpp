@@ -29,6 +29,7 @@ std::vector<InspectCell> describe(const MaterialDesc& material) {
           [](const RoughConductor&) { return std::pair<std::string, std::string>("rough conductor", ""); },
           [](const Dielectric&) { return std::pair<std::string, std::string>("dielectric", ""); },
           [](const Glossy&) { return std::pair<std::string, std::string>("glossy", ""); },
+          [](const Diffractive&) { return std::pair<std::string, std::string>("diffractive", ""); },
           [](const MeasuredDesc& m) {
             return std::pair<std::string, std::string>("measured", m.file.string());
           },

@@ -12,6 +12,7 @@
 #include "materials/bsdf.h"
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
+#include "materials/diffractive.h"
 #include "materials/glossy.h"
 #include "materials/lambert.h"
 #include "materials/measured_brdf.h"
@@ -22,8 +23,8 @@
 namespace spectrace {
 
 /// Visited once a path vertex; immutable, shared between threads.
-using Material = std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, MeasuredBrdf,
-                              SeparatedBrdf, TabulatedBrdf, PairedBrdf>;
+using Material = std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, Diffractive,
+                              MeasuredBrdf, SeparatedBrdf, TabulatedBrdf, PairedBrdf>;
 
 [[nodiscard]] BsdfValue evaluate(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
 [[nodiscard]] LobeValues evaluate_lobes(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
@@ -46,7 +47,8 @@ struct SeparatedDesc {
 struct MaterialDesc {
   std::string name;
   std::string where;  ///< of the JSON object, for messages at build time
-  std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, MeasuredDesc, SeparatedDesc>
+  std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, Diffractive, MeasuredDesc,
+               SeparatedDesc>
       kind;
 };
 

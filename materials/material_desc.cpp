@@ -83,28 +83,65 @@ decltype(MaterialDesc::kind) parse_conductor(const JsonValue& json) {
   return RoughConductor{std::move(fresnel), parse_roughness(roughness)};
 }
 
+/// "f0", or the forms of conductors.
+SpecularFresnel parse_fresnel(const JsonValue& json) {
+  const JsonValue f0 = json.get("f0");
+  if (!f0.exists()) return parse_conductor_fresnel(json);
+  for (const char* key : {"eta", "k", "metal_file", "thin_film"}) {
+    if (const JsonValue other = json.get(key); other.exists()) {
+      other.error(std::string("\"f0\" and \"") + key + "\" exclude each other");
+    }
+  }
+  return SchlickFresnel{parse_spectrum(f0, SpectrumRole::kReflectance)};
+}
+
+/// The shares of the surface that the two lobes cover; together at most 1.
+void parse_scales(const JsonValue& json, double default_specular, Float& specular_scale,
+                  Float& diffuse_scale) {
+  const JsonValue specular = json.get("specular_scale"), diffuse = json.get("diffuse_scale");
+  specular_scale = static_cast<Float>(specular.number(default_specular, kUnitInterval));
+  diffuse_scale = static_cast<Float>(diffuse.number(1 - specular_scale, kUnitInterval));
+  // 1e-6: the rounding of two single-precision shares.
+  if (specular_scale + diffuse_scale > Float(1 + 1e-6)) {
+    (diffuse.exists() ? diffuse : specular).error("specular_scale + diffuse_scale must be at most 1");
+  }
+}
+
 Glossy parse_glossy(const JsonValue& json) {
   Glossy glossy;
   glossy.reflectance = parse_texture(json.require("reflectance"));
-  if (const JsonValue f0 = json.get("f0"); f0.exists()) {
-    for (const char* key : {"eta", "k", "metal_file", "thin_film"}) {
-      if (const JsonValue other = json.get(key); other.exists()) {
-        other.error(std::string("\"f0\" and \"") + key + "\" exclude each other");
-      }
-    }
-    glossy.fresnel = SchlickFresnel{parse_spectrum(f0, SpectrumRole::kReflectance)};
-  } else {
-    glossy.fresnel = parse_conductor_fresnel(json);
-  }
+  glossy.fresnel = parse_fresnel(json);
   glossy.ggx = parse_roughness(json.require("roughness"));
-  const JsonValue specular = json.get("specular_scale"), diffuse = json.get("diffuse_scale");
-  glossy.specular_scale = static_cast<Float>(specular.number(0.5, kUnitInterval));
-  glossy.diffuse_scale = static_cast<Float>(diffuse.number(1 - glossy.specular_scale, kUnitInterval));
-  // 1e-6: the rounding of two single-precision shares.
-  if (glossy.specular_scale + glossy.diffuse_scale > Float(1 + 1e-6)) {
-    (diffuse.exists() ? diffuse : specular).error("specular_scale + diffuse_scale must be at most 1");
-  }
+  parse_scales(json, 0.5, glossy.specular_scale, glossy.diffuse_scale);
   return glossy;
+}
+
+MicroRoughness parse_micro_roughness(const JsonValue& json) {
+  // Beyond 10 µm everything is diffracted at any wavelength and angle of this program.
+  constexpr NumberRange kRms{.min = 0, .max = 1e4};
+  // Shorter than 10 nm nothing is left of the spectrum that light could see; 1 mm is no roughness any more.
+  constexpr NumberRange kCorrelation{.min = 10, .max = 1e6};
+  // At 2 the spectrum has no finite roughness; steeper than 16 it is all but a Gaussian.
+  constexpr NumberRange kExponent{.min = 2.1, .max = 16};
+  MicroRoughness micro;
+  micro.rms_nm = static_cast<Float>(json.require("rms_nm").number(0, kRms));
+  micro.correlation_nm =
+      static_cast<Float>(json.require("correlation_nm").number(micro.correlation_nm, kCorrelation));
+  micro.exponent = static_cast<Float>(json.get("exponent").number(micro.exponent, kExponent));
+  json.reject_unknown_keys();
+  return micro;
+}
+
+Diffractive parse_diffractive(const JsonValue& json) {
+  Diffractive diffractive;
+  if (const JsonValue reflectance = json.get("reflectance"); reflectance.exists()) {
+    diffractive.reflectance = parse_texture(reflectance);
+  }
+  diffractive.fresnel = parse_fresnel(json);
+  diffractive.ggx = parse_roughness(json.require("roughness"));
+  diffractive.micro = parse_micro_roughness(json.require("micro_roughness"));
+  parse_scales(json, 1, diffractive.specular_scale, diffractive.diffuse_scale);
+  return diffractive;
 }
 
 SeparatedDesc parse_separated(const JsonValue& json) {
@@ -121,6 +158,7 @@ decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string
     return Dielectric{parse_optical_constant(json.require("eta"), kPositive)};
   }
   if (type == "glossy") return parse_glossy(json);
+  if (type == "diffractive") return parse_diffractive(json);
   if (type == "measured") return MeasuredDesc{json.require("file").path()};
   if (type == "separated") return parse_separated(json);
   return Lambert{parse_texture(json.require("reflectance"))};
@@ -144,7 +182,7 @@ MaterialDesc parse_material(const JsonValue& json) {
   material.where = json.where();
   material.name = json.require("name").string();
   const std::string type = json.require("type").choice(
-      "", {"lambert", "conductor", "dielectric", "glossy", "measured", "separated"});
+      "", {"lambert", "conductor", "dielectric", "glossy", "diffractive", "measured", "separated"});
   if (type.empty()) return material;  // recorded; what the other keys should be is unknown
   material.kind = parse_kind(json, type);
   json.reject_unknown_keys();

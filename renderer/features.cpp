@@ -13,8 +13,9 @@ bool is_textured(const Material& material) {
   if (const auto* lambert = std::get_if<Lambert>(&material)) {
     return lambert->reflectance.is_textured();
   }
-  const auto* glossy = std::get_if<Glossy>(&material);
-  return glossy != nullptr && glossy->reflectance.is_textured();
+  if (const auto* glossy = std::get_if<Glossy>(&material)) return glossy->reflectance.is_textured();
+  const auto* diffractive = std::get_if<Diffractive>(&material);
+  return diffractive != nullptr && diffractive->reflectance.is_textured();
 }
 
 bool is_dispersive(const Material& material) {

@@ -39,6 +39,16 @@ Glossy plastic(Float alpha) {
           .specular_scale = Float(0.5)};
 }
 
+/// Half of its green light diffracted at normal incidence, over the diffuse lobe of `plastic`.
+Diffractive diffractive(Float alpha, Float rms_nm, Float correlation_nm) {
+  return {.reflectance = ramp(Float(0.2), Float(0.8)),
+          .fresnel = gold_like(),
+          .ggx = {alpha, alpha},
+          .micro = {.rms_nm = rms_nm, .correlation_nm = correlation_nm, .exponent = Float(2.5)},
+          .diffuse_scale = Float(0.4),
+          .specular_scale = Float(0.6)};
+}
+
 Material built_in(const std::string& name) {
   return build_material(
       load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials" / (name + ".json")));
@@ -117,6 +127,17 @@ void add_analytic(std::vector<BsdfCase>& cases) {
     g.specular_scale = 0;
     return g;
   });
+  add("Diffractive", [] { return diffractive(Float(0.1), 40, 2000); });
+  add("DiffractiveNarrow", [] { return diffractive(Float(0.3), 40, 20'000); });
+  add("DiffractiveWide", [] { return diffractive(Float(0.05), 100, 500); });
+  add("DiffractiveThroughAndThrough", [] {  // nothing left to mirror, nor a diffuse lobe
+    Diffractive d = diffractive(Float(0.05), 5000, 2000);
+    d.diffuse_scale = 0;
+    d.specular_scale = 1;
+    return d;
+  });
+  add("DiffractiveSmooth", [] { return diffractive(Float(0.1), 0, 2000); });  // never diffracts
+  add("BuiltInDiffractive", [] { return built_in("diffractive_flakes"); });
   add("BuiltInGlossy", [] { return built_in("glossy"); });
   add("BuiltInGold", [] { return built_in("gold"); });
   add("BuiltInPearlescent", [] { return built_in("pearlescent"); });

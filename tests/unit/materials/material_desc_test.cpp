@@ -55,6 +55,23 @@ TEST(MaterialDesc, ReadsEveryType) {
   EXPECT_EQ(separated.model, SeparationModel::kFresnel);
 }
 
+TEST(MaterialDesc, ReadsDiffractiveMaterials) {
+  const std::string head = R"({"name": "a", "type": "diffractive", "f0": 0.9, "roughness": 0.1, )";
+  const auto bare = std::get<Diffractive>(
+      parse(head + R"("micro_roughness": {"rms_nm": 40, "correlation_nm": 2000}})").kind);
+  EXPECT_EQ(bare.micro.rms_nm, 40);
+  EXPECT_EQ(bare.micro.correlation_nm, 2000);
+  EXPECT_EQ(bare.micro.exponent, 3);
+  EXPECT_EQ(bare.specular_scale, 1);
+  EXPECT_EQ(bare.diffuse_scale, 0);
+  expect_problem(head + R"("micro_roughness": {"rms_nm": 40}})", "correlation_nm");
+  expect_problem(head + R"("micro_roughness": {"rms_nm": -1, "correlation_nm": 2000}})", "rms_nm");
+  expect_problem(head + R"("micro_roughness": {"rms_nm": 40, "correlation_nm": 2000, "exponent": 2}})",
+                 "exponent");
+  expect_problem(head + R"("micro_roughness": {"rms_nm": 40, "correlation_nm": 2000}, "diffuse_scale": 0.1})",
+                 "must be at most 1");
+}
+
 TEST(MaterialDesc, RoughnessIsAlphaItself) {
   const auto rough = std::get<RoughConductor>(
       parse(R"({"name": "a", "type": "conductor", "eta": 0.2, "k": 3, "roughness": 0.3})").kind);

@@ -83,6 +83,9 @@ Json everything() {
       {"name": "glass", "type": "dielectric", "eta": {"sellmeier": {"b": [1.7, 0.3, 1.9], "c_um2": [0.01, 0.06, 155]}}},
       {"name": "coat", "type": "glossy", "reflectance": 0.3, "f0": 0.04, "roughness": 0.1, "specular_scale": 0.4,
        "diffuse_scale": 0.6},
+      {"name": "flakes", "type": "diffractive", "reflectance": 0.3, "eta": 1.2, "k": 6, "roughness": 0.1,
+       "micro_roughness": {"rms_nm": 60, "correlation_nm": 2000, "exponent": 2.5}, "specular_scale": 0.4,
+       "diffuse_scale": 0.6},
       {"name": "real", "type": "measured", "file": "furnace.json"},
       {"name": "lobes", "type": "separated", "file": "furnace.json", "model": "fresnel"}],
     "groups": [{"name": "pair", "shapes": [
