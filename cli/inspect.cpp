@@ -24,14 +24,15 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spectrace inspect cc_nothern_aurora_spec.bsdf\n"
     "  spectrace inspect pearlescent.sep\n"
+    "  spectrace inspect mystique.brdf\n"
     "  spectrace inspect out.exr --json\n"
     "  spectrace inspect scenes/cornell_box.json\n"
     "\n"
     "Tells the file's fields, units and ranges; of measurements what is measured, invalid and extrapolated.\n"
     "Files are told apart by content: tensor files (.bsdf, .sep), scenes (JSON), images (EXR, HDR, PNG, "
-    "...).";
+    "...);\nother measurements by their extension: Cornell's scattered text (.brdf), MERL's .binary.";
 
-enum class FileKind { kTensors, kScene, kImage };
+enum class FileKind { kTensors, kMeasured, kScene, kImage };
 
 FileKind kind_of(const std::filesystem::path& file) {
   std::array<char, 64> head{};
@@ -45,6 +46,7 @@ FileKind kind_of(const std::filesystem::path& file) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   // Damaged ones and those of other programs: their reader says what is wrong.
   if (extension == ".bsdf" || extension == ".sep") return FileKind::kTensors;
+  if (extension == ".brdf" || extension == ".binary") return FileKind::kMeasured;
   if (extension == ".json") return FileKind::kScene;
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool is_json =
@@ -57,6 +59,9 @@ ExitCode inspect_command(const std::string& file, bool as_json) {
   switch (kind_of(file)) {
     case FileKind::kTensors:
       report = inspect_tensors(file);
+      break;
+    case FileKind::kMeasured:
+      report = inspect_measured(file);
       break;
     case FileKind::kScene:
       report = inspect_scene(file);
@@ -103,7 +108,7 @@ InspectReport inspect_image(const std::filesystem::path& file) {
 }
 
 void add_inspect(CLI::App& app, Action& chosen) {
-  CLI::App* command = app.add_subcommand("inspect", "Tell what is in a .bsdf, .sep, image or scene");
+  CLI::App* command = app.add_subcommand("inspect", "Tell what is in a measurement, .sep, image or scene");
   command->footer(kExamples);
   struct Arguments {
     std::string file;

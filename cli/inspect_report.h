@@ -47,6 +47,7 @@ struct ValueStatistics {
 /// One a kind of file; all throw InputError. Each file is told apart by its content, see inspect.cpp.
 [[nodiscard]] InspectReport inspect_image(const std::filesystem::path& file);
 [[nodiscard]] InspectReport inspect_tensors(const std::filesystem::path& file);
+[[nodiscard]] InspectReport inspect_measured(const std::filesystem::path& file);  ///< of other layouts
 [[nodiscard]] InspectReport inspect_scene(const std::filesystem::path& file);
 
 }  // namespace spectrace::cli

@@ -110,6 +110,12 @@ InspectSection measured_summary(const MeasuredTables& tables) {
   InspectSection section;
   section.title = "measurement";
   section.add("description", tables.description);
+  section.add("format", tables.source.format);
+  if (tables.source.samples > 0) {
+    section.add("samples", tables.source.samples);
+    section.add("invalid_samples", tables.source.invalid_samples);
+    section.add("filled_cells", tables.source.filled_cells);
+  }
   section.add("isotropic", tables.is_isotropic());
   section.add("incident_azimuths", tables.phi_i.size());
   section.add("symmetry_reduction", tables.symmetry_reduction());
@@ -159,17 +165,31 @@ InspectSection separated_summary(const SeparatedTables& tables) {
   return section;
 }
 
-}  // namespace
-
-InspectReport inspect_tensors(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = read_file(file);
-  const TensorFile tensors = TensorFile::parse(bytes, file.string());
+InspectSection file_summary(const std::filesystem::path& file, std::span<const std::byte> bytes) {
   InspectSection summary;
   summary.title = "file";
   summary.add("file", file.string());
   summary.add("bytes", bytes.size());
   summary.add("sha256", sha256_hex(bytes));
-  InspectReport report = {summary, field_table(tensors)};
+  return summary;
+}
+
+}  // namespace
+
+InspectReport inspect_measured(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = read_file(file);
+  const MeasuredTables tables = measured_from_bytes(bytes, file.string());
+  InspectReport report = {file_summary(file, bytes)};
+  report[0].add("kind", "measured BRDF, converted to the EPFL layout");
+  report.push_back(measured_summary(tables));
+  report.push_back(elevation_table(tables));
+  return report;
+}
+
+InspectReport inspect_tensors(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = read_file(file);
+  const TensorFile tensors = TensorFile::parse(bytes, file.string());
+  InspectReport report = {file_summary(file, bytes), field_table(tensors)};
   if (tensors.find("rho_s") != nullptr) {
     report[0].add("kind", "separated material");
     report.push_back(separated_summary(separated_from_tensors(tensors)));

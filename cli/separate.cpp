@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `spectrace separate IN.bsdf -o OUT.sep`
+// `spectrace separate IN -o OUT.sep`
 #include "separation/separate.h"
 
 #include <fmt/format.h>
@@ -23,6 +23,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spectrace separate irid_flake_paint2_spec.bsdf -o irid.sep\n"
     "  spectrace separate paper_white_rgb.bsdf -o paper.sep --report paper.json\n"
+    "  spectrace separate mystique.brdf -o mystique.sep\n"
     "  spectrace separate car.bsdf -o car.sep --diffuse table\n"
     "\n"
     "OUT.sep holds all three models (sun, fresnel, diffraction). The report goes to standard output.\n"
@@ -64,7 +65,11 @@ void add_separate(CLI::App& app, Action& chosen) {
       app.add_subcommand("separate", "Separate a measured BRDF into diffuse and specular lobes");
   command->footer(kExamples);
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("input", arguments->input, "measured BRDF of the EPFL database (.bsdf)")->required();
+  command
+      ->add_option(
+          "input", arguments->input,
+          "measured BRDF: of the EPFL database (.bsdf), Cornell's scattered text (.brdf) or MERL's .binary")
+      ->required();
   command->add_option("-o,--output", arguments->output, "separated material to write (.sep)")->required();
   command
       ->add_option("--weight", arguments->weight,

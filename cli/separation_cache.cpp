@@ -45,7 +45,7 @@ bool is_readable(const std::filesystem::path& file) {
 SeparationResult separate_bytes(std::span<const std::byte> bytes, const std::string& sha256,
                                 const std::filesystem::path& bsdf, const SeparationOptions& options,
                                 Progress& progress) {
-  const MeasuredBrdf measured(measured_from_tensors(TensorFile::parse(bytes, bsdf.string())));
+  const MeasuredBrdf measured(measured_from_bytes(bytes, bsdf.string()));
   SeparationResult result = separate(measured, options, progress);
   result.tables.source_name = bsdf.filename().string();
   result.tables.source_sha256 = sha256;

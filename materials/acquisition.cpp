@@ -29,43 +29,64 @@ constexpr double kInvisibleWeight = 0.01;
 /// leads to an arbitrary point beyond the last visible one: measure this far inside instead.
 constexpr Float kBorder = Float(1e-4);
 
-/// All wavelengths of one direction pair.
-class Detector {
+class MaterialSource final : public BrdfSource {
  public:
-  Detector(const Material& material, const std::vector<float>& lambda_nm)
-      : material_(material), size_(lambda_nm.size()) {
-    for (std::size_t i = 0; i < size_; i += kLanes) {
+  MaterialSource(const Material& material, const std::vector<float>& lambda_nm)
+      : material_(material), axis_(SpectralAxis::wavelengths(lambda_nm)) {
+    for (std::size_t i = 0; i < lambda_nm.size(); i += kLanes) {
       std::array<Float, kLanes> lambda{}, pdf{};
-      for (std::size_t j = 0; j < kLanes; ++j) lambda[j] = lambda_nm[std::min(i + j, size_ - 1)];
+      for (std::size_t j = 0; j < kLanes; ++j) lambda[j] = lambda_nm[std::min(i + j, lambda_nm.size() - 1)];
       pdf.fill(1);
       chunks_.emplace_back(lambda, pdf);
     }
-    double sum = 0;
-    for (const float l : lambda_nm) sum += weight_.emplace_back(cie_xyz_bar(l)[1] + kInvisibleWeight);
+  }
+
+  [[nodiscard]] const SpectralAxis& axis() const override { return axis_; }
+  bool read(Vec3 wo, Vec3 wi, std::span<float> value_cos) const override {
+    for (std::size_t i = 0; i < value_cos.size(); i += kLanes) {
+      const BsdfValue v = evaluate(material_, wo, wi, {.lambda = chunks_[i / kLanes]});
+      for (std::size_t j = i; j < std::min(i + kLanes, value_cos.size()); ++j) {
+        value_cos[j] = static_cast<float>(v.value_cos[int(j - i)]);
+      }
+    }
+    return true;
+  }
+
+ private:
+  const Material& material_;
+  SpectralAxis axis_;
+  std::vector<SampledWavelengths> chunks_;
+};
+
+/// All of a source's axis at one direction pair.
+class Detector {
+ public:
+  explicit Detector(const BrdfSource& source) : source_(source), value_cos_(source.axis().size()) {
+    if (source.axis().is_rgb()) {
+      weight_ = {0.2126, 0.7152, 0.0722};  // of linear sRGB: Rec. ITU-R BT.709
+    } else {
+      for (const float l : source.axis().lambda_nm()) weight_.push_back(cie_xyz_bar(l)[1] + kInvisibleWeight);
+    }
+    const double sum = std::accumulate(weight_.begin(), weight_.end(), 0.0);
     for (double& w : weight_) w /= sum;
   }
 
-  /// f cosθi at every wavelength; valid until the next call.
+  /// f cosθi over the axis; valid until the next call.
   const std::vector<float>& measure(Vec3 wo, Vec3 wi) {
-    value_cos_.resize(chunks_.size() * kLanes);
-    for (std::size_t i = 0; i < chunks_.size(); ++i) {
-      const BsdfValue v = evaluate(material_, wo, wi, {.lambda = chunks_[i]});
-      for (std::size_t j = 0; j < kLanes; ++j)
-        value_cos_[i * kLanes + j] = static_cast<float>(v.value_cos[int(j)]);
-    }
-    value_cos_.resize(size_);
+    is_known_ = source_.read(wo, wi, value_cos_);
     return value_cos_;
   }
+  /// Of the last measurement: BrdfSource::read()'s answer.
+  [[nodiscard]] bool is_known() const { return is_known_; }
   [[nodiscard]] double luminance(const std::vector<float>& spectrum) const {
     return std::inner_product(weight_.begin(), weight_.end(), spectrum.begin(), 0.0);
   }
 
  private:
-  const Material& material_;
-  std::size_t size_;
-  std::vector<SampledWavelengths> chunks_;
+  const BrdfSource& source_;
   std::vector<double> weight_;
   std::vector<float> value_cos_;
+  bool is_known_ = false;
 };
 
 std::vector<Float> to_axis(const std::vector<float>& v) { return {v.begin(), v.end()}; }
@@ -75,7 +96,7 @@ Vec3 spherical(Float theta, Float phi) {
 }
 
 /// The tables' grid without their values.
-MeasuredTables empty_tables(const AcquisitionOptions& options) {
+MeasuredTables empty_tables(const AcquisitionOptions& options, const SpectralAxis& axis) {
   MeasuredTables t;
   t.file_name = options.description;
   t.description = options.description;
@@ -94,7 +115,7 @@ MeasuredTables empty_tables(const AcquisitionOptions& options) {
   }
   t.warp_size = options.warp_size;
   t.table_size = options.table_size;
-  t.axis = SpectralAxis::wavelengths(options.lambda_nm);
+  t.axis = axis;
   return t;
 }
 
@@ -151,7 +172,8 @@ void measure_slice(MeasuredTables& t, const Slice& slice, const Warp2D& vndf, co
       t.spectra[(slice.index * t.axis.size() + l) * cells + i] = value_cos[l] * static_cast<float>(scale);
     }
     t.luminance[slice.index * cells + i] = static_cast<float>(detector.luminance(value_cos) * double(scale));
-    t.valid[slice.index * cells + i] = 1;
+    t.valid[slice.index * cells + i] = detector.is_known() ? 1 : 0;
+    if (!detector.is_known()) ++t.source.filled_cells;
   }
 }
 
@@ -212,18 +234,25 @@ std::string AcquisitionOptions::problem() const {
 }
 
 MeasuredTables acquire(const Material& material, const AcquisitionOptions& options, Progress& progress) {
-  if (const std::string problem = options.problem(); !problem.empty()) {
-    throw InputError(options.description, "", problem);
-  }
   if (is_delta(material) || is_transmissive(material)) {
     throw InputError(options.description, "", "a perfectly smooth material has no finite BRDF to measure");
   }
-  Detector detector(material, options.lambda_nm);
+  if (const std::string problem = options.problem(); !problem.empty()) {
+    throw InputError(options.description, "", problem);
+  }
+  return acquire(MaterialSource(material, options.lambda_nm), options, progress);
+}
+
+MeasuredTables acquire(const BrdfSource& source, const AcquisitionOptions& options, Progress& progress) {
+  if (const std::string problem = options.problem(); !problem.empty()) {
+    throw InputError(options.description, "", problem);
+  }
+  Detector detector(source);
   const bool is_isotropic = options.azimuths == 1;
   if (is_isotropic && looks_anisotropic(detector)) {
     progress.note("the material changes with azimuth, but is measured as isotropic, at azimuth 0");
   }
-  MeasuredTables t = empty_tables(options);
+  MeasuredTables t = empty_tables(options, source.axis());
   NormalDistribution normals =
       ndf_from_backscatter([&](Vec3 w) { return detector.luminance(detector.measure(w, w)); },
                            options.ndf_size, is_isotropic ? 2 : options.ndf_azimuths);

@@ -252,10 +252,6 @@ float MeasuredTables::last_measured_theta_i() const {
   return is_copy ? theta_i[thetas - 2] : theta_i.back();
 }
 
-MeasuredTables read_measured(const std::filesystem::path& file) {
-  return measured_from_tensors(TensorFile::read(file));
-}
-
 MeasuredTables measured_from_tensors(const TensorFile& tensors) {
   MeasuredTables out;
   out.file_name = tensors.file_name();

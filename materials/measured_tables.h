@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,14 @@
 #include "materials/tensor_file.h"
 
 namespace spectrace {
+
+/// Where tables come from that were not measured in this layout (materials/measured_file.cpp).
+struct MeasuredSource {
+  std::string format = "EPFL tensor file";  ///< or "Cornell text", "MERL binary"
+  std::size_t samples = 0;                  ///< what the other file holds; 0 for this layout
+  std::size_t invalid_samples = 0;          ///< of them marked invalid, or negative
+  std::size_t filled_cells = 0;  ///< cells above the horizon whose value no sample is near: not `valid`
+};
 
 /// The fields of an EPFL `.bsdf`. "Incident" is the file's word for the direction its slices are indexed by;
 /// in this program that is wo (docs/conventions.md).
@@ -33,6 +42,8 @@ struct MeasuredTables {
   /// warp, to give f·cos; without it they are f·cos.
   bool jacobian = true;
 
+  MeasuredSource source;
+
   /// What validation changed or found.
   std::size_t negative_values = 0;  ///< of `spectra`, clamped to 0
   float most_negative = 0;
@@ -48,9 +59,12 @@ struct MeasuredTables {
   [[nodiscard]] std::size_t slices() const { return phi_i.size() * theta_i.size(); }
 };
 
+/// Any of the formats of MeasuredSource, told apart by content; all but the EPFL layout are converted to it.
+/// Throws InputError naming file and place.
+MeasuredTables read_measured(const std::filesystem::path& file);
+MeasuredTables measured_from_bytes(std::span<const std::byte> bytes, const std::string& file_name);
 /// Throws InputError naming file and field: missing, wrong type or shape, not increasing, non-finite or
 /// negative where that has no meaning, grids below 2x2, phi_i ranges that are no whole, half or quarter turn.
-MeasuredTables read_measured(const std::filesystem::path& file);
 MeasuredTables measured_from_tensors(const TensorFile& tensors);
 /// The EPFL layout, readable by the database's own tools.
 TensorFile measured_to_tensors(const MeasuredTables& tables);

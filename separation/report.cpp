@@ -86,6 +86,11 @@ std::string SeparationReport::full() const {
   const auto cell_line = [&](std::string_view name, std::size_t n) {
     line(name, fmt::format("{:>9} ({:.1f} %)", n, percent(n, cells)));
   };
+  if (source.samples > 0) {
+    line("source", fmt::format("{}: {} samples, {} of them invalid; cells near none are filled, and count as "
+                               "unmeasured",
+                               source.format, source.samples, source.invalid_samples));
+  }
   line("cells", fmt::format("{:>9}, theta_h {}", cells, spacing_of(options.grid)));
   cell_line("  measured", measured);
   cell_line("  extrapolated", extrapolated);
@@ -123,6 +128,13 @@ std::string SeparationReport::json(bool with_timings) const {
   json.member("usable", usable);
   json.member("verdict", verdict);
   write_options(json, options);
+  json.key("source");
+  json.begin_object();
+  json.member("format", source.format);
+  json.member("samples", source.samples);
+  json.member("invalid_samples", source.invalid_samples);
+  json.member("filled_cells", source.filled_cells);
+  json.end_object();
   json.member("fill_rule", kFillRule);
   json.key("cells");
   json.begin_object();

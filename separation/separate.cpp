@@ -159,6 +159,7 @@ SeparationResult separate(const MeasuredBrdf& measured, const SeparationOptions&
   result.tables = empty_tables(measured, options.grid);
   result.tables.source_name = measured.tables().description;
   result.report.options = options;
+  result.report.source = measured.tables().source;
   result.report.negative_values = measured.tables().negative_values;
   with_threads(options.threads, [&] { run(measured, options, progress, result); });
   result.tables.report_json = result.report.json(false);
