@@ -35,7 +35,8 @@ std::vector<InspectCell> describe(const MaterialDesc& material) {
           },
           [](const SeparatedDesc& s) {
             return std::pair<std::string, std::string>(
-                "separated", fmt::format("{}, model {}", s.file.string(), name_of(s.model)));
+                "separated",
+                fmt::format("{}, model {}", s.file.string(), s.analytic ? "analytic" : s.model ? name_of(*s.model) : "richest"));
           }},
       material.kind);
   return {material.name, type, detail};

@@ -7,12 +7,15 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "cli/inspect_report.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "materials/measured_tables.h"
-#include "materials/separated_tables.h"
+#include "materials/separated_lookup.h"
 #include "materials/tensor_file.h"
 
 namespace spectrace::cli {
@@ -141,7 +144,15 @@ InspectSection measured_summary(const MeasuredTables& tables) {
   return section;
 }
 
-InspectSection separated_summary(const SeparatedTables& tables) {
+const std::vector<float>& rho_s_values(const SeparatedTables& tables) { return tables.rho_s; }
+std::vector<float> rho_s_values(const CompactTables& tables) {
+  std::vector<float> values(tables.rho_s.code.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = tables.rho_s[i];
+  return values;
+}
+
+template <typename Tables>
+InspectSection separated_summary(const Tables& tables, SeparationModel richest) {
   InspectSection section;
   section.title = "separated_material";
   section.add("source", tables.source_name);
@@ -151,16 +162,22 @@ InspectSection separated_summary(const SeparatedTables& tables) {
   section.add("phi_d_nodes", tables.grid.n_phi_d);
   section.add("theta_h_spacing", tables.grid.quadratic_theta_h ? "quadratic" : "uniform");
   add_axis(section, tables.axis);
-  std::string models = tables.s_sun.empty() ? "" : "sun ";
-  models += tables.s_fresnel.empty() ? "" : "fresnel ";
-  models += tables.s_diffraction.empty() ? "" : "diffraction ";
-  if (!models.empty()) models.pop_back();
+  std::string models;
+  for (int m = 0; m <= static_cast<int>(richest); ++m) {
+    if (m > 0) models.push_back(' ');
+    models += name_of(static_cast<SeparationModel>(m));
+  }
   section.add("models", models);
-  const ValueStatistics diffuse = statistics_of(tables.c_d), specular = statistics_of(tables.rho_s);
+  const ValueStatistics diffuse = statistics_of(tables.c_d), specular = statistics_of(rho_s_values(tables));
   section.add("diffuse_albedo_mean", diffuse.mean);
   section.add("diffuse_albedo_max", diffuse.max);
   section.add("specular_table_max_per_sr", specular.max);
   section.add("specular_cells_of_zero", specular.zero);
+  if constexpr (std::is_same_v<Tables, CompactTables>) {
+    section.add("rho_s_error_bound", std::exp2(double(tables.octaves_per_code) / 2) - 1);
+    section.add("spectral_rank", tables.rank);
+  }
+  section.add("residual_rank", tables.residual.rank);
   if (!tables.report_json.empty()) section.add("report", "\n" + tables.report_json);
   return section;
 }
@@ -190,9 +207,11 @@ InspectReport inspect_tensors(const std::filesystem::path& file) {
   const std::vector<std::byte> bytes = read_file(file);
   const TensorFile tensors = TensorFile::parse(bytes, file.string());
   InspectReport report = {file_summary(file, bytes), field_table(tensors)};
-  if (tensors.find("rho_s") != nullptr) {
-    report[0].add("kind", "separated material");
-    report.push_back(separated_summary(separated_from_tensors(tensors)));
+  if (tensors.find("format") != nullptr) {
+    const SeparatedSource source = separated_source(tensors);
+    report[0].add("kind", is_compact(tensors) ? "separated material, compact" : "separated material");
+    report.push_back(
+        std::visit([&](const auto& t) { return separated_summary(*t, richest_model(source)); }, source));
   } else if (tensors.find("vndf") != nullptr) {
     report[0].add("kind", "measured BRDF");
     const MeasuredTables tables = measured_from_tensors(tensors);

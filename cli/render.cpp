@@ -16,6 +16,7 @@
 #include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/error.h"
+#include "separation/choose_model.h"
 
 namespace spectrace::cli {
 
@@ -28,7 +29,8 @@ struct Arguments {
   std::optional<int> spp;
   std::optional<std::uint64_t> seed;
   int threads = 0;
-  std::string separate;  // a model's name, or empty
+  std::string separate;  // a model's name, "auto", or empty
+  double tolerance = kDefaultTolerance;
   std::string cache;
   bool strict = false;
   bool layer_pngs = false;
@@ -56,16 +58,13 @@ fs::path output_file(const Arguments& arguments) {
   return file;
 }
 
-SeparationModel model_named(const std::string& name) {
-  if (name == "sun") return SeparationModel::kSun;
-  return name == "fresnel" ? SeparationModel::kFresnel : SeparationModel::kDiffraction;
-}
-
 /// Every measured material becomes its separated form.
 void separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& progress) {
   const fs::path cache = arguments.cache.empty() ? default_cache() : fs::path(arguments.cache);
+  const std::optional<SeparationModel> model = separation_model_named(arguments.separate);  // none: auto
   SeparationOptions options;
   options.threads = arguments.threads;
+  options.residual_rank = !model || model == SeparationModel::kResidual ? kDefaultResidualRank : 0;
   std::size_t count = 0;
   for (MaterialDesc& material : scene.materials) {
     if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
@@ -73,7 +72,14 @@ void separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& 
       progress.note(fmt::format("{}: {} {}", material.name,
                                 separated.was_cached ? "separated before," : "separated into",
                                 separated.file.string()));
-      material.kind = SeparatedDesc{separated.file, model_named(arguments.separate)};
+      SeparatedDesc description{separated.file, model};
+      if (!model) {
+        const ModelChoice choice = choose_model(MeasuredBrdf(read_measured(measured->file)),
+                                                read_separated_source(separated.file), arguments.tolerance);
+        progress.note(fmt::format("{}: model {}", material.name, choice.reason));
+        description.model = choice.model;
+      }
+      material.kind = description;
       ++count;
     }
   }
@@ -146,8 +152,13 @@ void add_render(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   app.add_option("--separate", arguments->separate,
-                 "separate every measured material first and render it with this model")
-      ->check(CLI::IsMember({"sun", "fresnel", "diffraction"}));
+                 "separate every measured material first and render it with this model; auto: the "
+                 "cheapest within --tolerance")
+      ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "auto"}));
+  app.add_option("--tolerance", arguments->tolerance,
+                 "of --separate auto: share of the reflected light a model may get wrong")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   app.add_option("--cache", arguments->cache,
                  "folder that keeps separated materials; default: ~/.cache/spectrace");
   app.add_option("--exposure", arguments->exposure, "factor on the PNG, not on the EXR")

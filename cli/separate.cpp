@@ -15,6 +15,8 @@
 #include "cli/separation_cache.h"
 #include "core/base/file.h"
 #include "materials/separated_tables.h"
+#include "separation/choose_model.h"
+#include "separation/compact.h"
 
 namespace spectrace::cli {
 namespace {
@@ -25,16 +27,52 @@ constexpr const char* kExamples =
     "  spectrace separate paper_white_rgb.bsdf -o paper.sep --report paper.json\n"
     "  spectrace separate mystique.brdf -o mystique.sep\n"
     "  spectrace separate car.bsdf -o car.sep --diffuse table\n"
+    "  spectrace separate pearl.bsdf -o pearl.sep --model auto --tolerance 0.02\n"
+    "  spectrace separate pearl.bsdf -o pearl.sep --quality 10\n"
     "\n"
-    "OUT.sep holds all three models (sun, fresnel, diffraction). The report goes to standard output.\n"
+    "OUT.sep holds the chosen model and all cheaper ones. The report goes to standard output.\n"
     "Exit code 1: the fit is unusable, and OUT.sep is not written.";
 
 struct Arguments {
   std::string input, output, report;
   std::string weight = "product", spacing = "quadratic", diffuse = "lambert", residual = "whole",
               colour = "dark";
+  std::string model = "diffraction";
+  double tolerance = kDefaultTolerance;
+  int quality = kDefaultQuality;
+  bool full = false, analytic = false;
   int threads = 0;
 };
+
+/// The tables as OUT.sep will hold them, and a line about that.
+struct Stored {
+  TensorFile file;
+  std::string summary;
+};
+
+Stored store_full(const SeparatedTables& tables) {
+  return {.file = separated_to_tensors(tables), .summary = "plain tables of single precision"};
+}
+
+Stored store_compact(const SeparatedTables& tables, const Arguments& arguments, SeparationModel richest) {
+  const CompactResult result = compact(tables, arguments.quality, richest);
+  return {.file = compact_to_tensors(result.tables),
+          .summary =
+              fmt::format("up to model {}, quality {}: rho_s within {:.2g} of its value, spectra of rank {} "
+                          "within {:.2g} (rms)",
+                          name_of(richest), arguments.quality, result.report.rho_s_error_bound,
+                          result.report.spectral_rank, result.report.spectral_rms_error)};
+}
+
+/// The model named, or of --model auto the cheapest that meets the tolerance, with the reason printed.
+SeparationModel richest_of(const Arguments& arguments, const SeparatedTables& tables) {
+  if (const auto named = separation_model_named(arguments.model)) return *named;
+  const ModelChoice choice = choose_model(
+      MeasuredBrdf(read_measured(arguments.input)),
+      std::make_shared<const CompactTables>(compact(tables, arguments.quality).tables), arguments.tolerance);
+  fmt::print("  {:<22}{}\n", "model", choice.reason);
+  return choice.model;
+}
 
 ExitCode separate_command(const Arguments& arguments) {
   require_folder_of(arguments.output);
@@ -44,6 +82,9 @@ ExitCode separate_command(const Arguments& arguments) {
   options.diffuse = arguments.diffuse == "lambert" ? DiffuseForm::kLambert : DiffuseForm::kTable;
   options.residual = arguments.residual == "whole" ? SpectralResidual::kWhole : SpectralResidual::kPrinted;
   options.colour = arguments.colour == "dark" ? DiffuseColour::kDark : DiffuseColour::kPrinted;
+  const bool wants_residual = arguments.model == "residual" || arguments.model == "auto";
+  options.residual_rank = wants_residual ? kDefaultResidualRank : 0;
+  options.analytic = arguments.analytic;
   options.threads = arguments.threads;
 
   SilentProgress progress;
@@ -53,8 +94,12 @@ ExitCode separate_command(const Arguments& arguments) {
     write_file_atomically(arguments.report, std::string_view(result.report.json() + "\n"));
   }
   if (!result.report.usable) return ExitCode::kDiffers;
-  separated_to_tensors(result.tables).write(arguments.output);
-  fmt::print("wrote {}\n", arguments.output);
+  const SeparationModel richest = richest_of(arguments, result.tables);
+  const Stored stored =
+      arguments.full ? store_full(result.tables) : store_compact(result.tables, arguments, richest);
+  stored.file.write(arguments.output);
+  fmt::print("wrote {}: {} bytes, {}\n", arguments.output, std::filesystem::file_size(arguments.output),
+             stored.summary);
   return ExitCode::kSuccess;
 }
 
@@ -90,10 +135,31 @@ void add_separate(CLI::App& app, Action& chosen) {
       ->check(CLI::IsMember({"dark", "printed"}))
       ->capture_default_str();
   command
-      ->add_option("--residual", arguments->residual,
+      ->add_option("--spectral-residual", arguments->residual,
                    "what eqs. 19 and 20 compare: the whole BRDF, or as printed")
       ->check(CLI::IsMember({"whole", "printed"}))
       ->capture_default_str();
+  command
+      ->add_option("--model", arguments->model,
+                   "richest model to store; auto: the cheapest within --tolerance")
+      ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "auto"}))
+      ->capture_default_str();
+  command
+      ->add_option("--tolerance", arguments->tolerance,
+                   "of --model auto: share of the reflected light a model may get wrong")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--quality", arguments->quality,
+                   "bits of precision of OUT.sep: its size against its error")
+      ->check(CLI::Range(kMinQuality, kMaxQuality))
+      ->capture_default_str();
+  command->add_flag("--analytic", arguments->analytic,
+                    "also fit Lambert + GGX at each wavelength, the paper's comparison");
+  command
+      ->add_flag("--full", arguments->full,
+                 "plain tables of single precision instead, for other programs to read")
+      ->excludes("--quality");
   command->add_option("--report", arguments->report, "also write the report as JSON");
   command->add_option("--threads", arguments->threads, "threads to use, 0 = all cores")
       ->check(CLI::Range(0, 4096))

@@ -11,7 +11,8 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "materials/measured_brdf.h"
-#include "materials/separated_tables.h"
+#include "materials/separated_lookup.h"
+#include "separation/compact.h"
 
 namespace spectrace::cli {
 namespace {
@@ -23,10 +24,10 @@ constexpr std::size_t kHashDigits = 16;  // 64 bits: no two materials of one fol
 /// Everything but the thread count, which changes no bit of the result.
 std::string key_of(const std::string& file_sha256, const SeparationOptions& o) {
   const std::string text = fmt::format(
-      "{} v{} grid {} {} {} {} weight {} eps {} eta {} {} starts {} prior {} {} {} {}", file_sha256,
+      "{} v{} grid {} {} {} {} weight {} eps {} eta {} {} starts {} prior {} {} {} {} terms {}", file_sha256,
       kMethodVersion, o.grid.n_theta_h, o.grid.n_theta_d, o.grid.n_phi_d, o.grid.quadratic_theta_h,
       static_cast<int>(o.weight), o.epsilon, o.eta_diffuse, o.eta_specular, o.starts, o.diffraction_prior,
-      name_of(o.diffuse), name_of(o.residual), name_of(o.colour));
+      name_of(o.diffuse), name_of(o.residual), name_of(o.colour), o.residual_rank);
   return sha256_hex(std::as_bytes(std::span(text))).substr(0, kHashDigits);
 }
 
@@ -35,7 +36,7 @@ bool is_readable(const std::filesystem::path& file) {
   std::error_code absent;
   if (!std::filesystem::exists(file, absent)) return false;
   try {
-    read_separated(file);
+    read_separated_source(file);
     return true;
   } catch (const InputError&) {
     return false;
@@ -75,7 +76,7 @@ CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std:
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(folder.string(), {}, "cannot make this folder: " + failed.message());
-  separated_to_tensors(result.tables).write(cached.file);
+  compact_to_tensors(compact(result.tables, kDefaultQuality).tables).write(cached.file);
   cached.report = std::move(result.report);
   return cached;
 }

@@ -15,7 +15,7 @@ struct CachedSeparation {
   SeparationReport report;  ///< empty where it was cached
 };
 
-/// The `.sep` of a measured file in `folder` (made where absent), separating only where it is not there yet.
+/// The compact `.sep` of a measured file in `folder` (made where absent), separating only where it is not there yet.
 /// Its name holds the file's stem and a hash of its bytes, the options and the method's version, so that
 /// neither a changed measurement nor a changed method meets an old result. Throws InputError where the file
 /// cannot be read or its fit is unusable.

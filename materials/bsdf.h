@@ -26,14 +26,15 @@ struct BsdfValue {
   Float pdf = 0;              ///< density per solid angle [1/sr] of sample() returning wi
 };
 
-/// value_cos split by lobe. The three parts sum to value_cos to float rounding.
+/// value_cos split by lobe. The parts sum to value_cos to float rounding.
 struct LobeValues {
   SampledSpectrum diffuse;
-  SampledSpectrum fresnel;      ///< the specular lobe, or its Fresnel part where a material tells them apart
-  SampledSpectrum diffraction;  ///< signed (paper, eq. 21); 0 where a material has none
+  SampledSpectrum fresnel;  ///< the specular lobe, or its Fresnel part where a material tells them apart
+  SampledSpectrum diffraction{};  ///< signed (paper, eq. 21); 0 where a material has none
+  SampledSpectrum residual{};     ///< signed (ADR 0007); 0 where a material has none
 
-  [[nodiscard]] SampledSpectrum specular() const { return fresnel + diffraction; }
-  [[nodiscard]] SampledSpectrum total() const { return diffuse + fresnel + diffraction; }
+  [[nodiscard]] SampledSpectrum specular() const { return fresnel + diffraction + residual; }
+  [[nodiscard]] SampledSpectrum total() const { return diffuse + specular(); }
 };
 
 struct BsdfSample {

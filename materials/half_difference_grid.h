@@ -38,6 +38,9 @@ struct HalfDifferenceGrid {
   [[nodiscard]] double coordinate_d(double theta_d_rad) const;
   [[nodiscard]] double coordinate_p(double phi_d_rad) const;  ///< in [0, n_phi_d)
   [[nodiscard]] GridPoint locate(const HalfDifference& angles) const;
+
+  /// A grid dimension beyond this is no measurement, but would overflow `int` arithmetic on indices.
+  static constexpr std::size_t kMaxDimension = 1 << 14;
 };
 
 }  // namespace spectrace

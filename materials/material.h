@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "materials/analytic_brdf.h"
 #include "materials/bsdf.h"
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
@@ -24,7 +25,7 @@ namespace spectrace {
 
 /// Visited once a path vertex; immutable, shared between threads.
 using Material = std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, Diffractive,
-                              MeasuredBrdf, SeparatedBrdf, TabulatedBrdf, PairedBrdf>;
+                              MeasuredBrdf, SeparatedBrdf, TabulatedBrdf, AnalyticBrdf, PairedBrdf>;
 
 [[nodiscard]] BsdfValue evaluate(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
 [[nodiscard]] LobeValues evaluate_lobes(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
@@ -38,10 +39,11 @@ using Material = std::variant<Lambert, SmoothConductor, RoughConductor, Dielectr
 struct MeasuredDesc {
   std::filesystem::path file;
 };
-/// A `.sep` file, not yet read, and the model to render it with.
+/// A `.sep` file, not yet read, and the model to render it with: without one the richest that the file holds.
 struct SeparatedDesc {
   std::filesystem::path file;
-  SeparationModel model = SeparationModel::kDiffraction;
+  std::optional<SeparationModel> model{};
+  bool analytic = false;  ///< the analytic model instead
 };
 /// Analytic materials are plain already; measured ones name their files.
 struct MaterialDesc {

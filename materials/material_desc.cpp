@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials from JSON; the forms are documented in docs/materials.md.
+#include <fmt/format.h>
+
 #include <memory>
 #include <utility>
 
+#include "core/base/error.h"
 #include "materials/material.h"
 #include "materials/refractive_index.h"
 
@@ -146,9 +149,10 @@ Diffractive parse_diffractive(const JsonValue& json) {
 
 SeparatedDesc parse_separated(const JsonValue& json) {
   SeparatedDesc separated{.file = json.require("file").path()};
-  const std::string model = json.get("model").choice("diffraction", {"sun", "fresnel", "diffraction"});
-  if (model == "sun") separated.model = SeparationModel::kSun;
-  if (model == "fresnel") separated.model = SeparationModel::kFresnel;
+  const std::string model =
+      json.get("model").choice("richest", {"richest", "sun", "fresnel", "diffraction", "residual", "analytic"});
+  separated.model = separation_model_named(model);
+  separated.analytic = model == "analytic";
   return separated;
 }
 
@@ -164,10 +168,39 @@ decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string
   return Lambert{parse_texture(json.require("reflectance"))};
 }
 
+AnalyticBrdf build_analytic(const std::filesystem::path& file, const SeparatedSource& source) {
+  return std::visit(
+      [&](const auto& tables) {
+        const std::size_t n = tables->axis.size();
+        if (tables->analytic.empty()) {
+          throw InputError(file.string(), {}, "has no analytic model: separate it again with --analytic");
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+          const float albedo = tables->analytic[k], f_0 = tables->analytic[2 * n + k],
+                      alpha = tables->analytic[3 * n + k];
+          if (!(albedo <= 1 && f_0 <= 1 && alpha >= float(kMinAlpha) && alpha <= 1)) {
+            throw InputError(file.string(), "field \"analytic\"",
+                             fmt::format("column {} lies outside the bounds of the model", k));
+          }
+        }
+        return AnalyticBrdf(tables->axis, tables->analytic);
+      },
+      source);
+}
+
 struct Builder {
   Material operator()(const MeasuredDesc& m) const { return MeasuredBrdf(read_measured(m.file)); }
   Material operator()(const SeparatedDesc& s) const {
-    return SeparatedBrdf(std::make_shared<const SeparatedTables>(read_separated(s.file)), s.model);
+    const SeparatedSource source = read_separated_source(s.file);
+    if (s.analytic) return build_analytic(s.file, source);
+    const SeparationModel richest = richest_model(source), model = s.model.value_or(richest);
+    if (model > richest) {
+      throw InputError(s.file.string(), {},
+                       fmt::format("has no tables for the model {}, only up to {}: separate it again with "
+                                   "--model {}",
+                                   name_of(model), name_of(richest), name_of(model)));
+    }
+    return SeparatedBrdf(source, model);
   }
   template <typename Analytic>
   Material operator()(const Analytic& material) const {

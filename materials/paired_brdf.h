@@ -7,6 +7,7 @@
 #include <optional>
 #include <variant>
 
+#include "materials/analytic_brdf.h"
 #include "materials/bsdf.h"
 #include "materials/measured_brdf.h"
 #include "materials/separated_brdf.h"
@@ -16,7 +17,7 @@ namespace spectrace {
 
 class PairedBrdf {
  public:
-  using Values = std::variant<MeasuredBrdf, TabulatedBrdf, SeparatedBrdf>;
+  using Values = std::variant<MeasuredBrdf, TabulatedBrdf, SeparatedBrdf, AnalyticBrdf>;
   /// `directions` reaches every direction (a separated material does: it always draws some by the cosine), so
   /// the estimate stays unbiased whatever `values` is. A path is the same for all `values` as long as Russian
   /// roulette, which follows the throughput, is off.
@@ -26,6 +27,10 @@ class PairedBrdf {
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
+  [[nodiscard]] bool has_specular_parts() const {
+    const auto* separated = std::get_if<SeparatedBrdf>(&values_);
+    return separated != nullptr && separated->has_specular_parts();
+  }
 
  private:
   Values values_;

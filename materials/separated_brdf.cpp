@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/math/math.h"
@@ -20,69 +22,58 @@ constexpr Float kCosineShare = Float(0.05);
 // Neither of two lobes that hold energy is chosen less often: the albedo table is a coarse quadrature.
 constexpr Float kMinLobeShare = Float(0.02);
 
-Float interpolate(const std::vector<float>& table, const GridPoint& point) {
-  Float sum = 0;
-  for (std::size_t i = 0; i < point.cell.size(); ++i) sum += point.cell_weight[i] * table[point.cell[i]];
-  return sum;
-}
-
 bool above_horizon(Vec3 wo, Vec3 wi) { return wo.z > 0 && wi.z > 0; }
 
 }  // namespace
 
 struct SeparatedBrdf::Data {
-  Data(std::shared_ptr<const SeparatedTables> t, SeparationModel model)
-      : tables(std::move(t)), sampler(*tables, model) {}
+  Data(SeparatedSource tables, SeparationModel chosen)
+      : source(std::move(tables)), model(chosen), sampler(source, model) {
+    std::visit(
+        [&](const auto& t) {
+          SPECTRACE_CHECK(t != nullptr);
+          axis = t->axis;
+          albedo_d = t->c_d;
+        },
+        source);
+    for (float c : albedo_d) mean_albedo_d += Float(c) / Float(albedo_d.size());
+  }
 
-  std::shared_ptr<const SeparatedTables> tables;
+  SeparatedSource source;
+  SeparationModel model;
   SeparatedSampler sampler;
+  SpectralAxis axis;
+  std::vector<float> albedo_d;  // c_d
+  Float mean_albedo_d = 0;
 
-  /// Both lobes at a pair of directions, before their colours.
+  /// Both lobes at a pair of directions, before their colours, times (cosθi + cosθo): bounded however low
+  /// either direction (hard case H3).
   struct Shape {
     GridPoint point;
-    Float diffuse_cos = 0;   ///< ρ_d cosθi for c_d = 1
-    Float specular_cos = 0;  ///< ρ_s cosθi
+    Float diffuse = 0, specular = 0;
+    Float to_value_cos = 0;  ///< cosθi / (cosθi + cosθo), at most 1
   };
-  [[nodiscard]] Shape shape(Vec3 wo, Vec3 wi) const {
-    Shape result;
-    result.diffuse_cos = wi.z * kInvPi;
-    if (sampler.is_empty() && tables->diffuse_shape.empty()) return result;
-    result.point = tables->grid.locate(to_half_difference(wo, wi));
-    if (!tables->diffuse_shape.empty())
-      result.diffuse_cos *= interpolate(tables->diffuse_shape, result.point);
-    // The table holds q = ρ_s (cosθi + cosθo): the quotient is at most 1 however low either direction (hard
-    // case H3).
-    result.specular_cos = interpolate(tables->rho_s, result.point) * (wi.z / (wi.z + wo.z));
-    return result;
+  template <typename Tables>
+  [[nodiscard]] Shape shape(const Tables& tables, Vec3 wo, Vec3 wi) const {
+    Shape shape{.point = {}, .diffuse = (wi.z + wo.z) * kInvPi, .to_value_cos = wi.z / (wi.z + wo.z)};
+    if (sampler.is_empty() && tables.diffuse_shape.empty() && model != SeparationModel::kResidual)
+      return shape;
+    shape.point = tables.grid.locate(to_half_difference(wo, wi));
+    shape.diffuse *= diffuse_shape_at(tables, shape.point);
+    if (!sampler.is_empty()) shape.specular = specular_at(tables, shape.point);
+    return shape;
   }
-  [[nodiscard]] SampledSpectrum s_fresnel(const GridPoint& point, const SpectralAxis::Lookup& lookup) const {
-    SampledSpectrum s;
-    const std::size_t n = tables->axis.size();
-    for (std::size_t i = 0; i < 2; ++i) {
-      s += lookup.apply(&tables->s_fresnel[point.theta_d[i] * n]) * point.theta_d_weight[i];
+  /// All of ρ (cosθi + cosθo). What the residual takes away it takes from the rest: never below 0.
+  template <typename Tables>
+  [[nodiscard]] SampledSpectrum total(const Tables& tables, const Shape& shape, const SampledSpectrum& albedo,
+                                      const SpectralAxis::Lookup& lookup) const {
+    SampledSpectrum sum = albedo * shape.diffuse;
+    if (shape.specular > 0) sum += spectral_factor(tables, model, shape.point, lookup) * shape.specular;
+    if (model == SeparationModel::kResidual && !tables.residual.is_empty()) {
+      sum += tables.residual.at(shape.point, lookup) * (mean_albedo_d * shape.diffuse + shape.specular);
+      for (int lane = 0; lane < kLanes; ++lane) sum[lane] = std::max(sum[lane], Float(0));
     }
-    return s;
-  }
-  [[nodiscard]] SampledSpectrum s_diffraction(const GridPoint& point,
-                                              const SpectralAxis::Lookup& lookup) const {
-    SampledSpectrum s;
-    const std::size_t n = tables->axis.size();
-    for (std::size_t i = 0; i < 4; ++i) {
-      s += lookup.apply(&tables->s_diffraction[point.angular[i] * n]) * point.angular_weight[i];
-    }
-    return s;
-  }
-  [[nodiscard]] SampledSpectrum spectral_factor(SeparationModel model, const GridPoint& point,
-                                                const SpectralAxis::Lookup& lookup) const {
-    switch (model) {
-      case SeparationModel::kSun:
-        return lookup.apply(tables->s_sun.data());
-      case SeparationModel::kFresnel:
-        return s_fresnel(point, lookup);
-      case SeparationModel::kDiffraction:
-        return s_diffraction(point, lookup);
-    }
-    return {};
+    return sum;
   }
   /// Probability of the specular lobe at wo, by its share of the light that leaves.
   [[nodiscard]] Float specular_share(Vec3 wo, const SampledSpectrum& c_d,
@@ -100,50 +91,65 @@ struct SeparatedBrdf::Data {
   }
 };
 
-SeparatedBrdf::SeparatedBrdf(std::shared_ptr<const SeparatedTables> tables, SeparationModel model)
-    : model_(model) {
-  SPECTRACE_CHECK(tables != nullptr);
-  data_ = std::make_shared<const Data>(std::move(tables), model);
-}
+SeparatedBrdf::SeparatedBrdf(SeparatedSource source, SeparationModel model)
+    : data_(std::make_shared<const Data>(std::move(source), model)) {}
 
-const SeparatedTables& SeparatedBrdf::tables() const { return *data_->tables; }
+SeparationModel SeparatedBrdf::model() const { return data_->model; }
 
 BsdfValue SeparatedBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
   if (!above_horizon(wo, wi)) return {};
-  const SpectralAxis::Lookup lookup = tables().axis.lookup(at.lambda);
-  const SampledSpectrum c_d = lookup.apply(tables().c_d.data());
+  const SpectralAxis::Lookup lookup = data_->axis.lookup(at.lambda);
+  const SampledSpectrum c_d = lookup.apply(data_->albedo_d.data());
   const Float share = data_->specular_share(wo, c_d, lookup);
   if (share == 0 && c_d.is_zero()) return {};
 
-  const Data::Shape shape = data_->shape(wo, wi);
-  BsdfValue result{c_d * shape.diffuse_cos, data_->pdf(wo, wi, share)};
-  if (share > 0) result.value_cos += data_->spectral_factor(model_, shape.point, lookup) * shape.specular_cos;
-  return result;
+  return std::visit(
+      [&](const auto& tables) {
+        const Data::Shape shape = data_->shape(*tables, wo, wi);
+        return BsdfValue{data_->total(*tables, shape, c_d, lookup) * shape.to_value_cos,
+                         data_->pdf(wo, wi, share)};
+      },
+      data_->source);
 }
 
 LobeValues SeparatedBrdf::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
   if (!above_horizon(wo, wi)) return {};
-  const SpectralAxis::Lookup lookup = tables().axis.lookup(at.lambda);
-  const Data::Shape shape = data_->shape(wo, wi);
-  LobeValues lobes;
-  lobes.diffuse = lookup.apply(tables().c_d.data()) * shape.diffuse_cos;
-  if (data_->sampler.is_empty()) return lobes;
-
-  if (model_ == SeparationModel::kDiffraction) {
-    const SampledSpectrum fresnel = data_->s_fresnel(shape.point, lookup);
-    lobes.fresnel = fresnel * shape.specular_cos;
-    // eq. 21
-    lobes.diffraction = (data_->s_diffraction(shape.point, lookup) - fresnel) * shape.specular_cos;
-  } else {
-    lobes.fresnel = data_->spectral_factor(model_, shape.point, lookup) * shape.specular_cos;
-  }
-  return lobes;
+  const SpectralAxis::Lookup lookup = data_->axis.lookup(at.lambda);
+  const SampledSpectrum c_d = lookup.apply(data_->albedo_d.data());
+  return std::visit(
+      [&](const auto& tables) {
+        const SeparationModel model = data_->model;
+        const Data::Shape shape = data_->shape(*tables, wo, wi);
+        const Float specular_cos = shape.specular * shape.to_value_cos;
+        LobeValues lobes;
+        lobes.diffuse = c_d * (shape.diffuse * shape.to_value_cos);
+        if (model == SeparationModel::kSun || model == SeparationModel::kFresnel) {
+          if (specular_cos > 0) {
+            lobes.fresnel = spectral_factor(*tables, model, shape.point, lookup) * specular_cos;
+          }
+          return lobes;
+        }
+        if (specular_cos > 0) {
+          const auto factor = [&](SeparationModel m) {
+            return spectral_factor(*tables, m, shape.point, lookup);
+          };
+          const SampledSpectrum fresnel = factor(SeparationModel::kFresnel);
+          lobes.fresnel = fresnel * specular_cos;
+          // eq. 21
+          lobes.diffraction = (factor(SeparationModel::kDiffraction) - fresnel) * specular_cos;
+        }
+        if (model == SeparationModel::kResidual) {
+          lobes.residual = data_->total(*tables, shape, c_d, lookup) * shape.to_value_cos - lobes.total();
+        }
+        return lobes;
+      },
+      data_->source);
 }
 
 std::optional<BsdfSample> SeparatedBrdf::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
   if (!(wo.z > 0)) return std::nullopt;
-  const SpectralAxis::Lookup lookup = tables().axis.lookup(at.lambda);
-  const SampledSpectrum c_d = lookup.apply(tables().c_d.data());
+  const SpectralAxis::Lookup lookup = data_->axis.lookup(at.lambda);
+  const SampledSpectrum c_d = lookup.apply(data_->albedo_d.data());
   const Float share = data_->specular_share(wo, c_d, lookup);
   if (share == 0 && c_d.is_zero()) return std::nullopt;
 

@@ -43,42 +43,17 @@ Vec3 reflect(Vec3 wo, Vec3 h) { return 2 * dot(wo, h) * h - wo; }
 
 Float theta_of(Vec3 wo) { return std::atan2(std::hypot(wo.x, wo.y), wo.z); }
 
-/// s of the model at a grid point, for the whole axis.
-void spectral_row(const SeparatedTables& tables, SeparationModel model, const GridPoint& point,
-                  std::vector<double>& row) {
-  const std::size_t n = tables.axis.size();
-  const auto add = [&](const std::vector<float>& table, std::size_t at, float weight) {
-    for (std::size_t k = 0; k < n; ++k) row[k] += double(weight) * table[at * n + k];
-  };
-  std::fill(row.begin(), row.end(), 0.0);
-  switch (model) {
-    case SeparationModel::kSun:
-      add(tables.s_sun, 0, 1);
-      break;
-    case SeparationModel::kFresnel:
-      for (int i = 0; i < 2; ++i) add(tables.s_fresnel, point.theta_d[i], point.theta_d_weight[i]);
-      break;
-    case SeparationModel::kDiffraction:
-      for (int i = 0; i < 4; ++i) add(tables.s_diffraction, point.angular[i], point.angular_weight[i]);
-      break;
-  }
-}
-
 }  // namespace
 
-SeparatedSampler::SeparatedSampler(const SeparatedTables& tables, SeparationModel model)
-    : axis_size_(tables.axis.size()) {
-  const auto positive = [](const std::vector<float>& v) {
-    return std::any_of(v.begin(), v.end(), [](float x) { return x > 0; });
-  };
-  const std::vector<float>& s = model == SeparationModel::kSun       ? tables.s_sun
-                                : model == SeparationModel::kFresnel ? tables.s_fresnel
-                                                                     : tables.s_diffraction;
-  empty_ = !positive(tables.rho_s) || !positive(s);
-  if (!empty_) tabulate(tables, model);
+SeparatedSampler::SeparatedSampler(const SeparatedSource& source, SeparationModel model) {
+  std::visit([&](const auto& tables) { tabulate(*tables, model); }, source);
 }
 
-void SeparatedSampler::tabulate(const SeparatedTables& tables, SeparationModel model) {
+template <typename Tables>
+void SeparatedSampler::tabulate(const Tables& tables, SeparationModel model) {
+  axis_size_ = tables.axis.size();
+  empty_ = !has_specular(tables, model);
+  if (empty_) return;
   const auto theta_o = theta_nodes_rad();
   constexpr std::array<Float, 1> kNoSecondParameter{0};
   std::vector<Float> density(theta_o.size() * kNodesU * kNodesV);
@@ -96,8 +71,7 @@ void SeparatedSampler::tabulate(const SeparatedTables& tables, SeparationModel m
         const Vec3 wi = reflect(wo, h);
         if (cos_d <= 0 || wi.z <= 0) continue;
         const GridPoint point = tables.grid.locate(to_half_difference(wo, wi));
-        Float q = 0;
-        for (int c = 0; c < 8; ++c) q += point.cell_weight[c] * tables.rho_s[point.cell[c]];
+        const Float q = specular_at(tables, point);
         spectral_row(tables, model, point, row);
         double mean = 0;
         for (double s : row) mean += s / axis_size_;

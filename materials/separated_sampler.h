@@ -9,7 +9,7 @@
 #include "core/math/vec.h"
 #include "core/math/warp2d.h"
 #include "core/spectra/sampled_spectrum.h"
-#include "materials/separated_tables.h"
+#include "materials/separated_lookup.h"
 
 namespace spectrace {
 
@@ -17,7 +17,7 @@ namespace spectrace {
 /// that a lobe is resolved alike whether it is half a degree or half the hemisphere wide.
 class SeparatedSampler {
  public:
-  SeparatedSampler(const SeparatedTables& tables, SeparationModel model);
+  SeparatedSampler(const SeparatedSource& source, SeparationModel model);
 
   /// wi in the upper hemisphere; nullopt where the drawn half vector reflects wo below it. u in [0, 1]².
   [[nodiscard]] std::optional<Vec3> sample(Vec3 wo, Vec2 u) const;
@@ -29,7 +29,8 @@ class SeparatedSampler {
   [[nodiscard]] bool is_empty() const { return empty_; }
 
  private:
-  void tabulate(const SeparatedTables& tables, SeparationModel model);
+  template <typename Tables>
+  void tabulate(const Tables& tables, SeparationModel model);
 
   std::size_t axis_size_ = 0;
   bool empty_ = true;

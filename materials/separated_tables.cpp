@@ -11,78 +11,24 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "materials/residual_file.h"
+#include "materials/tensor_reader.h"
 
 namespace spectrace {
 namespace {
 
 constexpr std::string_view kFormat = "spectrace separated material 1";
-// A grid dimension beyond this is no measurement, but would overflow `int` arithmetic on indices.
-constexpr std::size_t kMaxDimension = 1 << 14;
 
-std::string text_of(const Tensor& tensor) {
-  std::string text(tensor.bytes.size(), '\0');
-  std::transform(tensor.bytes.begin(), tensor.bytes.end(), text.begin(),
-                 [](std::byte b) { return static_cast<char>(b); });
-  return text;
-}
-
-class Reader {
- public:
-  explicit Reader(const TensorFile& file) : file_(file) {}
-
-  /// Every field of the format is finite and >= 0: anything else would reach pixels.
-  std::vector<float> non_negative(std::string_view name, std::span<const std::size_t> shape) const {
-    constexpr std::array kTypes{TensorType::kF32};
-    std::vector<float> values = file_.require(name, kTypes, shape).floats();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i]) || values[i] < 0) {
-        fail(name, fmt::format("expected finite values >= 0, element {} is {}", i, values[i]));
-      }
-    }
-    return values;
-  }
-  std::string text(std::string_view name) const {
-    constexpr std::array kTypes{TensorType::kU8};
-    constexpr std::array<std::size_t, 1> kAnyLength{0};
-    return text_of(file_.require(name, kTypes, kAnyLength));
-  }
-  /// The text of a field that may be absent.
-  std::string optional_text(std::string_view name) const {
-    return file_.find(name) ? text(name) : std::string();
-  }
-  [[noreturn]] void fail(std::string_view name, std::string problem) const {
-    throw InputError(file_.file_name(), fmt::format("field \"{}\"", name), std::move(problem));
-  }
-
- private:
-  const TensorFile& file_;
-};
-
-SpectralAxis read_axis(const TensorFile& tensors, const Reader& reader) {
-  if (!tensors.find("wavelengths")) return SpectralAxis::rgb();
-  constexpr std::array<std::size_t, 1> kAnyLength{0};
-  std::vector<float> lambda_nm = reader.non_negative("wavelengths", kAnyLength);
-  if (lambda_nm.empty()) reader.fail("wavelengths", "expected at least one wavelength");
-  if (std::adjacent_find(lambda_nm.begin(), lambda_nm.end(), std::greater_equal<>()) != lambda_nm.end()) {
-    reader.fail("wavelengths", "expected strictly increasing wavelengths");
-  }
-  return SpectralAxis::wavelengths(std::move(lambda_nm));
-}
-
-HalfDifferenceGrid read_grid(const TensorFile& tensors, const Reader& reader) {
+HalfDifferenceGrid read_grid(const TensorFile& tensors, const TensorReader& reader) {
   HalfDifferenceGrid grid;
-  const std::string spacing = reader.text("theta_h_spacing");
-  if (spacing != "quadratic" && spacing != "uniform") {
-    reader.fail("theta_h_spacing", "expected \"quadratic\" or \"uniform\"");
-  }
-  grid.quadratic_theta_h = spacing == "quadratic";
+  grid.quadratic_theta_h = reader.is_quadratic();
   constexpr std::array kTypes{TensorType::kF32};
   constexpr std::array<std::size_t, 3> kAnyTable{0, 0, 0};
   const Tensor& rho_s = tensors.require("rho_s", kTypes, kAnyTable);
   for (std::size_t n : rho_s.shape) {
-    if (n < 2 || n > kMaxDimension) {
+    if (n < 2 || n > HalfDifferenceGrid::kMaxDimension) {
       reader.fail("rho_s", fmt::format("shape {}: each dimension must lie in [2, {}]", rho_s.shape_text(),
-                                       kMaxDimension));
+                                       HalfDifferenceGrid::kMaxDimension));
     }
   }
   grid.n_theta_h = static_cast<int>(rho_s.shape[0]);
@@ -94,16 +40,13 @@ HalfDifferenceGrid read_grid(const TensorFile& tensors, const Reader& reader) {
 }  // namespace
 
 std::string name_of(SeparationModel model) {
-  switch (model) {
-    case SeparationModel::kSun:
-      return "sun";
-    case SeparationModel::kFresnel:
-      return "fresnel";
-    case SeparationModel::kDiffraction:
-      return "diffraction";
-  }
-  SPECTRACE_CHECK(!"a separation model");
-  return {};
+  return std::string(kSeparationModelNames.at(static_cast<std::size_t>(model)));
+}
+
+std::optional<SeparationModel> separation_model_named(std::string_view name) {
+  const auto it = std::find(kSeparationModelNames.begin(), kSeparationModelNames.end(), name);
+  if (it == kSeparationModelNames.end()) return std::nullopt;
+  return static_cast<SeparationModel>(it - kSeparationModelNames.begin());
 }
 
 SeparatedTables read_separated(const std::filesystem::path& file) {
@@ -111,7 +54,7 @@ SeparatedTables read_separated(const std::filesystem::path& file) {
 }
 
 SeparatedTables separated_from_tensors(const TensorFile& tensors) {
-  const Reader reader(tensors);
+  const TensorReader reader(tensors);
   if (!tensors.find("format")) {
     throw InputError(tensors.file_name(), {},
                      tensors.find("vndf")
@@ -122,7 +65,7 @@ SeparatedTables separated_from_tensors(const TensorFile& tensors) {
     reader.fail("format", fmt::format("expected \"{}\"", kFormat));
   }
   SeparatedTables tables;
-  tables.axis = read_axis(tensors, reader);
+  tables.axis = reader.axis();
   tables.grid = read_grid(tensors, reader);
   const std::size_t n = tables.axis.size();
   const auto h = static_cast<std::size_t>(tables.grid.n_theta_h),
@@ -139,6 +82,9 @@ SeparatedTables separated_from_tensors(const TensorFile& tensors) {
   tables.s_sun = reader.non_negative("s_sun", std::array{n});
   tables.s_fresnel = reader.non_negative("s_fresnel", std::array{d, n});
   tables.s_diffraction = reader.non_negative("s_diffraction", std::array{h, d, n});
+  if (reader.has("analytic"))
+    tables.analytic = reader.non_negative("analytic", std::array{std::size_t(4), n});
+  if (reader.has("residual_basis")) tables.residual = read_residual(reader, tables.grid, n);
   tables.source_name = reader.optional_text("source_name");
   tables.source_sha256 = reader.optional_text("source_sha256");
   tables.report_json = reader.optional_text("report");
@@ -162,6 +108,8 @@ TensorFile separated_to_tensors(const SeparatedTables& tables) {
   file.add(Tensor::from_floats("s_sun", {n}, tables.s_sun));
   file.add(Tensor::from_floats("s_fresnel", {d, n}, tables.s_fresnel));
   file.add(Tensor::from_floats("s_diffraction", {h, d, n}, tables.s_diffraction));
+  if (!tables.analytic.empty()) file.add(Tensor::from_floats("analytic", {4, n}, tables.analytic));
+  if (!tables.residual.is_empty()) add_residual(tables.residual, tables.grid, file);
   // A container field cannot be empty, so an unknown source is an absent field.
   if (!tables.source_name.empty()) file.add(Tensor::from_text("source_name", tables.source_name));
   if (!tables.source_sha256.empty()) file.add(Tensor::from_text("source_sha256", tables.source_sha256));

@@ -23,6 +23,12 @@ bool is_dispersive(const Material& material) {
   return glass != nullptr && !glass->eta.is_constant();
 }
 
+bool has_specular_parts(const Material& material) {
+  if (const auto* paired = std::get_if<PairedBrdf>(&material)) return paired->has_specular_parts();
+  const auto* separated = std::get_if<SeparatedBrdf>(&material);
+  return separated != nullptr && separated->has_specular_parts();
+}
+
 }  // namespace
 
 Features required_features(const Scene& scene, bool layers) {
@@ -38,6 +44,7 @@ Features required_features(const Scene& scene, bool layers) {
     f.transmission |= is_transmissive(material);
     f.dispersion |= is_dispersive(material);
     f.textures |= is_textured(material);
+    f.specular_parts |= layers && has_specular_parts(material);
   }
   return f;
 }

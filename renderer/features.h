@@ -23,7 +23,8 @@ struct Features {
   bool dispersion = false;
   bool textures = false;
   bool instances = false;
-  bool lobe_layers = false;  ///< diffuse, specular, emission, background apart
+  bool lobe_layers = false;     ///< diffuse, specular, emission, background apart
+  bool specular_parts = false;  ///< and within specular: Fresnel part, diffraction effect, residual
 
   friend constexpr bool operator==(const Features&, const Features&) = default;
 };
@@ -34,7 +35,7 @@ struct FeatureInfo {
   std::string_view name;
   std::string_view missing;
 };
-inline constexpr std::array<FeatureInfo, 10> kFeatureInfos{{
+inline constexpr std::array<FeatureInfo, 11> kFeatureInfos{{
     {&Features::indirect, "indirect light", "max_depth is at most 1"},
     {&Features::area_lights, "area lights", "no shape emits"},
     {&Features::delta_lights, "point and directional lights", "none in the scene"},
@@ -45,6 +46,7 @@ inline constexpr std::array<FeatureInfo, 10> kFeatureInfos{{
     {&Features::textures, "textures", "no material varies over its surface"},
     {&Features::instances, "instances", "none in the scene"},
     {&Features::lobe_layers, "layers by lobe", "not asked for"},
+    {&Features::specular_parts, "parts of the specular layer", "no separated material that has them"},
 }};
 
 /// Everything on.

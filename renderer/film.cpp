@@ -18,13 +18,13 @@ LaneToXyz::LaneToXyz(const SampledWavelengths& lambda) {
   }
 }
 
-bool LaneToXyz::add(const LaneSums& sums, Xyz& xyz) const {
+bool LaneToXyz::add(const LaneSums& sums, Xyz& xyz, bool may_be_negative) const {
   bool valid = true;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!counts_[lane]) {
       continue;
     }
-    valid &= std::isfinite(sums.v[lane]) && sums.v[lane] >= 0;
+    valid &= std::isfinite(sums.v[lane]) && (may_be_negative || sums.v[lane] >= 0);
     for (int c = 0; c < 3; ++c) {
       xyz[c] += weight_[lane][c] * sums.v[lane];
     }
@@ -50,13 +50,20 @@ void Film::add(int x, int y, const PathValue& value) {
   }
 }
 
-Image Film::resolve(bool layers) const {
-  std::vector<std::string> names{"R", "G", "B"};
-  if (layers) {
-    for (const char* layer : {"diffuse", "specular", "emission", "background"}) {  // in the order of Layer
-      for (const char* channel : {".R", ".G", ".B"}) {
-        names.push_back(std::string(layer) + channel);
-      }
+Image Film::resolve(LayerSet layers) const {
+  // In the order of Layer.
+  constexpr std::array<const char*, kLayerCount> kPrefixes{"",
+                                                           "diffuse.",
+                                                           "specular.",
+                                                           "emission.",
+                                                           "background.",
+                                                           "specular_fresnel.",
+                                                           "specular_diffraction.",
+                                                           "specular_residual."};
+  std::vector<std::string> names;
+  for (int layer = 0; layer < int(layers); ++layer) {
+    for (const char* channel : {"R", "G", "B"}) {
+      names.push_back(std::string(kPrefixes[layer]) + channel);
     }
   }
   names.emplace_back("diagnostics.invalid");
@@ -64,7 +71,7 @@ Image Film::resolve(bool layers) const {
   float* out = image.data.data();
   for (const Pixel& pixel : pixels_) {
     const double scale = pixel.valid > 0 ? 1 / double(pixel.valid) : 0;
-    for (int layer = 0; layer < (layers ? kLayerCount : 1); ++layer) {
+    for (int layer = 0; layer < int(layers); ++layer) {
       const Xyz& sum = pixel.sum[layer];
       for (double channel : xyz_to_rgb({sum[0] * scale, sum[1] * scale, sum[2] * scale})) {
         *out++ = float(channel);

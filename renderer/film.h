@@ -11,8 +11,23 @@
 
 namespace spectrace {
 
-enum class Layer : std::uint8_t { kBeauty, kDiffuse, kSpecular, kEmission, kBackground };
-inline constexpr int kLayerCount = 5;
+/// Beauty = the sum of the four layers after it; specular = the sum of its three parts, of which the last two
+/// are signed (paper, eq. 21; ADR 0007).
+enum class Layer : std::uint8_t {
+  kBeauty,
+  kDiffuse,
+  kSpecular,
+  kEmission,
+  kBackground,
+  kSpecularFresnel,
+  kSpecularDiffraction,
+  kSpecularResidual,
+};
+inline constexpr int kLayerCount = 8;
+constexpr bool is_signed(int layer) { return layer > int(Layer::kSpecularFresnel); }
+
+/// How many of the layers are kept apart, from the first on.
+enum class LayerSet : std::uint8_t { kBeauty = 1, kLobes = 5, kSpecularParts = kLayerCount };
 
 /// Radiance of one path by lane, in double: the layers of a path then sum to its beauty to 1e-15.
 struct LaneSums {
@@ -32,8 +47,9 @@ class LaneToXyz {
  public:
   /// Lanes of density 0 (terminated) add nothing.
   explicit LaneToXyz(const SampledWavelengths& lambda);
-  /// Adds `sums` to `xyz`. False where a lane that counts is negative or not finite.
-  bool add(const LaneSums& sums, Xyz& xyz) const;
+  /// Adds `sums` to `xyz`. False where a lane that counts is not finite, or negative unless
+  /// `may_be_negative`.
+  bool add(const LaneSums& sums, Xyz& xyz, bool may_be_negative = false) const;
 
  private:
   std::array<Xyz, kLanes> weight_{};
@@ -48,8 +64,8 @@ class Film {
   /// An invalid path is dropped as if never drawn, and counted.
   void add(int x, int y, const PathValue& value);
 
-  /// Channels of RenderResult::image; without `layers` R, G, B and diagnostics.invalid alone.
-  [[nodiscard]] Image resolve(bool layers) const;
+  /// Channels of RenderResult::image, as far as `layers` goes.
+  [[nodiscard]] Image resolve(LayerSet layers) const;
   [[nodiscard]] std::uint64_t invalid_samples() const;
   /// Of all vertices on measured BRDFs; 0 where there are none.
   [[nodiscard]] double extrapolated_share() const;

@@ -36,6 +36,10 @@ constexpr Features kStudio{.indirect = true,
                            .environment = true,
                            .textures = true,
                            .lobe_layers = true};
+constexpr Features with_specular_parts(Features f) {
+  f.specular_parts = true;
+  return f;
+}
 constexpr Features kOpaque{.indirect = true,
                            .area_lights = true,
                            .delta_lights = true,
@@ -62,6 +66,7 @@ constexpr std::array kKernels{
     make_kernel<kDirect>("direct"),
     make_kernel<kBox>("box"),
     make_kernel<kStudio>("studio"),
+    make_kernel<with_specular_parts(kStudio)>("studio, specular parts"),
     make_kernel<kOpaque>("opaque"),
     make_kernel<kFull>("full"),
 };

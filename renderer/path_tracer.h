@@ -98,8 +98,9 @@ class PathTracer {
         add_to(direct, radiance);
       } else if (!has_share_) {
         add_to(Layer::kSpecular, radiance);
+        if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
       } else {
-        add_split(radiance, diffuse_share_);
+        add_split(radiance, share_);
       }
     }
   }
@@ -110,21 +111,39 @@ class PathTracer {
     }
   }
 
-  void add_split(const SampledSpectrum& radiance, const SampledSpectrum& diffuse_share) {
+  /// What of a BSDF's value each lobe has, by lane.
+  struct LobeShares {
+    SampledSpectrum diffuse;               // in [0, 1]; the rest is specular
+    SampledSpectrum fresnel, diffraction;  // signed; the rest of specular is residual
+  };
+
+  void add_split(const SampledSpectrum& radiance, const LobeShares& share) {
     for (int lane = 0; lane < kLanes; ++lane) {
-      const double diffuse = double(radiance[lane]) * diffuse_share[lane];
+      const double all = double(radiance[lane]), diffuse = all * share.diffuse[lane],
+                   specular = all - diffuse;
       sums_[int(Layer::kDiffuse)].v[lane] += diffuse;
-      sums_[int(Layer::kSpecular)].v[lane] += double(radiance[lane]) - diffuse;
+      sums_[int(Layer::kSpecular)].v[lane] += specular;
+      if constexpr (kFeatures.specular_parts) {
+        const double fresnel = all * share.fresnel[lane], diffraction = all * share.diffraction[lane];
+        sums_[int(Layer::kSpecularFresnel)].v[lane] += fresnel;
+        sums_[int(Layer::kSpecularDiffraction)].v[lane] += diffraction;
+        sums_[int(Layer::kSpecularResidual)].v[lane] += specular - fresnel - diffraction;
+      }
     }
   }
 
-  /// The part of a BSDF value that is diffuse, by lane.
-  static SampledSpectrum diffuse_share(const LobeValues& lobes) {
+  static LobeShares lobe_shares(const LobeValues& lobes) {
     const SampledSpectrum total = lobes.total();
-    SampledSpectrum share;
+    LobeShares share;
     for (int lane = 0; lane < kLanes; ++lane) {
-      // Clamped: rounding of a sum of lobes must not make the other one negative.
-      share[lane] = total[lane] > 0 ? std::clamp(lobes.diffuse[lane] / total[lane], Float(0), Float(1)) : 0;
+      if (!(total[lane] > 0)) continue;
+      // Clamped: rounding of a sum of lobes, or a residual that takes from the diffuse lobe, must not make
+      // the specular one negative.
+      share.diffuse[lane] = std::clamp(lobes.diffuse[lane] / total[lane], Float(0), Float(1));
+      if constexpr (kFeatures.specular_parts) {
+        share.fresnel[lane] = lobes.fresnel[lane] / total[lane];
+        share.diffraction[lane] = lobes.diffraction[lane] / total[lane];
+      }
     }
     return share;
   }
@@ -132,9 +151,11 @@ class PathTracer {
   /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
   void flush() {
     const LaneToXyz weights(lambda_);
-    constexpr int kUsed = kFeatures.lobe_layers ? kLayerCount : 1;
-    for (int layer = 0; layer < kUsed; ++layer) {
-      value_.valid &= weights.add(sums_[layer], value_.xyz[layer]);
+    constexpr LayerSet kUsed = kFeatures.specular_parts ? LayerSet::kSpecularParts
+                               : kFeatures.lobe_layers  ? LayerSet::kLobes
+                                                        : LayerSet::kBeauty;
+    for (int layer = 0; layer < int(kUsed); ++layer) {
+      value_.valid &= weights.add(sums_[layer], value_.xyz[layer], is_signed(layer));
       sums_[layer] = {};
     }
   }
@@ -192,8 +213,8 @@ class PathTracer {
     const SampledSpectrum radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
     add_to(Layer::kBeauty, radiance);
     if constexpr (kFeatures.lobe_layers) {
-      add_split(radiance, has_share_ ? diffuse_share_
-                                     : diffuse_share(evaluate_lobes(vertex.material, vertex.wo, wi, at)));
+      add_split(radiance,
+                has_share_ ? share_ : lobe_shares(evaluate_lobes(vertex.material, vertex.wo, wi, at)));
     }
   }
 
@@ -244,7 +265,7 @@ class PathTracer {
     if (!sides_agree(vertex, wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
-        diffuse_share_ = diffuse_share(evaluate_lobes(vertex.material, vertex.wo, s->wi, at));
+        share_ = lobe_shares(evaluate_lobes(vertex.material, vertex.wo, s->wi, at));
         has_share_ = true;
       }
     }
@@ -295,9 +316,9 @@ class PathTracer {
   SampledSpectrum beta_{1};
   std::array<LaneSums, kLayerCount> sums_{};
   PathValue value_;
-  bool has_share_ = false;         // a non-delta hit has split the path into lobes
-  SampledSpectrum diffuse_share_;  // of everything that arrives from behind that hit
-  bool last_was_delta_ = true;     // the camera counts as one: no light sample competes
+  bool has_share_ = false;      // a non-delta hit has split the path into lobes
+  LobeShares share_;            // of everything that arrives from behind that hit
+  bool last_was_delta_ = true;  // the camera counts as one: no light sample competes
   Float last_pdf_ = 0;
   Vec3 last_position_;
 };

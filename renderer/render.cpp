@@ -99,7 +99,9 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
 
   EffectList effects = list_effects(needed, kernel.features);
   RenderResult result;
-  result.image = film.resolve(options.layers);
+  result.image = film.resolve(needed.specular_parts ? LayerSet::kSpecularParts
+                              : needed.lobe_layers  ? LayerSet::kLobes
+                                                    : LayerSet::kBeauty);
   result.report = {
       .kernel = std::string(kernel.name),
       .effects_used = std::move(effects.used),

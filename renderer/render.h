@@ -34,7 +34,9 @@ struct RenderReport {
 
 struct RenderResult {
   /// Channels R,G,B, diffuse.R,G,B, specular.R,G,B, emission.R,G,B, background.R,G,B,
-  /// diagnostics.invalid: linear sRGB as in core/spectra/color.h. beauty = the sum of the four layers.
+  /// diagnostics.invalid: linear sRGB as in core/spectra/color.h. beauty = the sum of the four layers. Where
+  /// a material tells them apart also specular_fresnel, specular_diffraction, specular_residual, whose sum is
+  /// specular; the latter two are signed.
   Image image;
   RenderReport report;
 };

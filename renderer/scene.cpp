@@ -46,9 +46,7 @@ std::string digest_of(const MaterialDesc& material) {
 
 Float last_measured_cosine(const Material& material) {
   const auto* measured = std::get_if<MeasuredBrdf>(&material);
-  return measured == nullptr
-             ? 0
-             : std::max(Float(0), std::cos(Float(measured->last_measured_theta_i())));
+  return measured == nullptr ? 0 : std::max(Float(0), std::cos(Float(measured->last_measured_theta_i())));
 }
 
 Environment build_environment(const EnvironmentDesc& light) {

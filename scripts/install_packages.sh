@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libembree-dev libopenexr-dev libopenimageio-dev libtinyobjloader-dev
   libeigen3-dev libceres-dev libtbb-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libzstd-dev
   libgtest-dev libvalijson-dev python3 fonts-dejavu-core
 )
 

@@ -14,7 +14,7 @@
 namespace spectrace {
 namespace {
 
-constexpr double kMinAlpha = 1e-3;  // bounds of separation.h's AnalyticFit
+constexpr double kLeastAlpha = 1e-3;  // of AnalyticParameters
 constexpr int kMaxIterations = 200;
 constexpr double kRelativeTolerance = 1e-12;  // of cost and parameters: the sums carry 13 digits
 // Every start is followed on one cell in seven (7 divides no grid dimension of the paper); the winner is then
@@ -145,7 +145,7 @@ class CompressedCost final : public ceres::SizedCostFunction<kAugmented, kFitPar
   std::size_t stride_;
 };
 
-constexpr FitVector kLower{0, 0, 0, -6.907755278982137};  // ln kMinAlpha
+constexpr FitVector kLower{0, 0, 0, -6.907755278982137};  // ln kLeastAlpha
 constexpr FitVector kUpper{1, std::numeric_limits<double>::infinity(), 1, 0};
 
 double projected_gradient_max(const FitEquations& equations, const FitVector& x) {
@@ -216,17 +216,11 @@ double median_value(const CellTable& table) {
 }  // namespace
 
 FitVector to_vector(const AnalyticFit& fit) {
-  return {fit.albedo_d, fit.rho_0, fit.f_0, std::log(std::clamp(fit.alpha, kMinAlpha, 1.0))};
+  return {fit.albedo_d, fit.rho_0, fit.f_0, std::log(std::clamp(fit.alpha, kLeastAlpha, 1.0))};
 }
 
 AnalyticFit from_vector(const FitVector& x) {
   return {.albedo_d = x[0], .rho_0 = x[1], .f_0 = x[2], .alpha = std::exp(x[3])};
-}
-
-double ggx_value(const AnalyticFit& fit, double cos_h, double cos_d, double cos_i, double cos_o) {
-  const Shared s = shared_terms(fit, cos_h, cos_d);
-  const double a2 = fit.alpha * fit.alpha;
-  return fit.rho_0 * s.fresnel * s.ndf * masking(cos_i, a2).value * masking(cos_o, a2).value;
 }
 
 FitEquations fit_equations(const CellTable& table, double epsilon, const FitVector& x) {
@@ -271,13 +265,20 @@ AnalyticSolution fit_analytic(const CellTable& table, const SeparationOptions& o
   if (!std::isfinite(best.cost)) return solution;
   solution.converged = best.usable;
   solution.fit = from_vector(best.x);
-  solution.fit.alpha = std::clamp(solution.fit.alpha, kMinAlpha, 1.0);
+  solution.fit.alpha = std::clamp(solution.fit.alpha, kLeastAlpha, 1.0);
   solution.initial_cost = best.initial_cost;
   solution.final_cost = best.cost;
   solution.iterations = best.iterations;
   solution.gradient_max =
       projected_gradient_max(fit_equations(table, options.epsilon, best.x), best.x) / double(table.fitted());
   return solution;
+}
+
+AnalyticFit refine_analytic(const CellTable& table, const SeparationOptions& options,
+                            const AnalyticFit& start) {
+  AnalyticFit fit = from_vector(solve_from(table, options.epsilon, to_vector(start), 1).x);
+  fit.alpha = std::clamp(fit.alpha, kLeastAlpha, 1.0);
+  return fit;
 }
 
 }  // namespace spectrace

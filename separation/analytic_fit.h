@@ -16,9 +16,6 @@ using FitVector = std::array<double, kFitParameters>;
 FitVector to_vector(const AnalyticFit& fit);
 AnalyticFit from_vector(const FitVector& x);
 
-/// Eq. 12 (GGX alone, without the Lambert term) at one pair of directions [1/sr]; finite down to the horizon.
-double ggx_value(const AnalyticFit& fit, double cos_h, double cos_d, double cos_i, double cos_o);
-
 /// ½ Σ r² over all fitted cells with r of eqs. 7-10, and what Gauss-Newton needs of it.
 struct FitEquations {
   double cost = 0;
@@ -41,5 +38,9 @@ struct AnalyticSolution {
 /// and the one of lowest cost is solved on all. `initial_cost` is the cost on all cells where that last solve
 /// began.
 AnalyticSolution fit_analytic(const CellTable& table, const SeparationOptions& options);
+
+/// The solution on all cells of `table` that lies in the valley of `start`.
+AnalyticFit refine_analytic(const CellTable& table, const SeparationOptions& options,
+                            const AnalyticFit& start);
 
 }  // namespace spectrace

@@ -31,7 +31,7 @@ bool is_well_above_horizon(const CellTable& table, std::size_t i) {
 
 /// Eq. 12 without rho_0 and F.
 double shape(double alpha, double cos_h, double cos_i, double cos_o) {
-  return ggx_value({.albedo_d = 0, .rho_0 = 1, .f_0 = 1, .alpha = alpha}, cos_h, 1, cos_i, cos_o);
+  return analytic_specular({.albedo_d = 0, .rho_0 = 1, .f_0 = 1, .alpha = alpha}, cos_h, 1, cos_i, cos_o);
 }
 
 /// Calls body(i, d, cos_h) for the cells well above the horizon of one theta_h.

@@ -2,6 +2,7 @@
 #include "separation/fill_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace spectrace {
@@ -15,12 +16,12 @@ void fill_below_horizon(const HalfDifferenceGrid& grid, std::vector<float>& tabl
     float* row = &table[group * n];
     std::vector<float> filled(row, row + n);
     for (int p = 0; p < n; ++p) {
-      for (int step = 1; filled[p] < 0 && step <= n / 2; ++step) {
+      for (int step = 1; std::isnan(filled[p]) && step <= n / 2; ++step) {
         const float before = row[(p + n - step) % n], after = row[(p + step) % n];
-        if (before >= 0 && after >= 0) {
+        if (std::isnan(before) || std::isnan(after)) {
+          filled[p] = std::isnan(before) ? after : before;
+        } else {
           filled[p] = (before + after) / 2;
-        } else if (before >= 0 || after >= 0) {
-          filled[p] = std::max(before, after);
         }
       }
     }
@@ -35,7 +36,7 @@ void fill_empty_rows(const HalfDifferenceGrid& grid, std::vector<float>& table) 
       float last = 0;
       for (int h = 0; h < grid.n_theta_h; ++h) {
         float& value = table[grid.index(h, d, p)];
-        if (value < 0) value = last;
+        if (std::isnan(value)) value = last;
         last = value;
       }
     }

@@ -2,13 +2,17 @@
 // What a table on the half-difference grid holds where no direction pair exists.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "materials/half_difference_grid.h"
 
 namespace spectrace {
 
-/// `table` is [theta_h][theta_d][phi_d], negative where it has no value. Such nodes take those of their
+/// Marks a node without a value.
+inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// `table` is [theta_h][theta_d][phi_d], kNoValue where there is none. Such nodes take those of their
 /// nearest neighbours in phi_d, else in theta_h; the poles become one value each, so that lookups are
 /// continuous.
 void fill_unmeasured(const HalfDifferenceGrid& grid, std::vector<float>& table);

@@ -59,6 +59,7 @@ void write_options(JsonWriter& json, const SeparationOptions& options) {
   json.member("residual", name_of(options.residual));
   json.member("starts", options.starts);
   json.member("diffraction_prior", options.diffraction_prior);
+  json.member("residual_rank", options.residual_rank);
   json.end_object();
 }
 
@@ -114,11 +115,18 @@ std::string SeparationReport::full() const {
                                    name_of(options.diffuse), 100 * lambert_cost));
   line("step 3", fmt::format("rms log residual: sun {:.4f}, fresnel {:.4f}, diffraction {:.4f}",
                              overall(rms_sun), overall(rms_fresnel), overall(rms_diffraction)));
-  line("residual", options.residual == SpectralResidual::kWhole
-                       ? "whole: eqs. 19 and 20 compare the whole BRDF, as eq. 18 does"
-                       : "printed: eqs. 19 and 20 compare what the diffuse lobe leaves, clamped at 0");
-  line("seconds", fmt::format("table {:.2f}, step 1 {:.2f}, step 2 {:.2f}, step 3 {:.2f}", seconds_table,
-                              seconds_step1, seconds_step2, seconds_step3));
+  if (options.residual_rank > 0) {
+    line("residual model",
+         fmt::format("{:.1f} % of what the diffraction model leaves; {:.3f} % of it clamped",
+                     100 * residual_explained, 100 * residual_clamped_share));
+  }
+  line("eqs. 19 and 20", options.residual == SpectralResidual::kWhole
+                             ? "whole: they compare the whole BRDF, as eq. 18 does"
+                             : "printed: they compare what the diffuse lobe leaves, clamped at 0");
+  line("seconds",
+       fmt::format(
+           "table {:.2f}, step 1 {:.2f}, step 2 {:.2f}, step 3 {:.2f}, residual {:.2f}, analytic {:.2f}",
+           seconds_table, seconds_step1, seconds_step2, seconds_step3, seconds_residual, seconds_analytic));
   return text;
 }
 
@@ -165,6 +173,10 @@ std::string SeparationReport::json(bool with_timings) const {
   write_array(json, "rms_sun", rms_sun);
   write_array(json, "rms_fresnel", rms_fresnel);
   write_array(json, "rms_diffraction", rms_diffraction);
+  if (options.residual_rank > 0) {
+    json.member("residual_explained", residual_explained);
+    json.member("residual_clamped_share", residual_clamped_share);
+  }
   if (with_timings) {
     json.key("seconds");
     json.begin_object();
@@ -172,6 +184,7 @@ std::string SeparationReport::json(bool with_timings) const {
     json.member("step1", seconds_step1);
     json.member("step2", seconds_step2);
     json.member("step3", seconds_step3);
+    json.member("residual", seconds_residual);
     json.end_object();
   }
   json.end_object();

@@ -12,9 +12,11 @@
 
 #include "core/base/error.h"
 #include "separation/analytic_fit.h"
+#include "separation/analytic_spectra.h"
 #include "separation/cell_table.h"
 #include "separation/diffuse_colour.h"
 #include "separation/parallel.h"
+#include "separation/residual_fit.h"
 #include "separation/spectral_fit.h"
 #include "separation/split.h"
 
@@ -119,6 +121,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   judge(report, measured.tables().is_isotropic(), analytic.converged);
   if (!report.usable) return;
 
+  const AnalyticFit achromatic = analytic.fit;
   std::vector<float> s_d;
   report.seconds_step1 += seconds([&] { s_d = dark_colour(measured, table, analytic, options); });
   report.dark_colour = !s_d.empty();
@@ -134,6 +137,21 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   report.seconds_step3 =
       seconds([&] { spectra = fit_spectra(measured, table, split, s_d, options, progress); });
   store(std::move(spectra), std::move(split), result);
+  if (options.analytic) {
+    progress.update("analytic model", 0, 1);
+    report.seconds_analytic =
+        seconds([&] { result.tables.analytic = fit_analytic_spectra(measured, table, achromatic, options); });
+  }
+  if (options.residual_rank == 0) return;
+
+  progress.update("residual", 0, 1);
+  ResidualReport residual;
+  report.seconds_residual = seconds([&] {
+    result.tables.residual =
+        fit_residual(measured, result.tables, std::size_t(options.residual_rank), residual);
+  });
+  report.residual_explained = residual.explained;
+  report.residual_clamped_share = residual.clamped_share;
 }
 
 }  // namespace
@@ -148,6 +166,9 @@ std::string SeparationOptions::problem() const {
   if (!positive(eta_specular)) return "eta_specular must be > 0";
   if (starts < 1) return "starts must be at least 1";
   if (!(std::isfinite(diffraction_prior) && diffraction_prior >= 0)) return "diffraction_prior must be >= 0";
+  if (residual_rank < 0 || residual_rank > int(kMaxResidualRank)) {
+    return fmt::format("residual_rank must lie in [0, {}]", kMaxResidualRank);
+  }
   if (threads < 0) return "threads must be >= 0";
   return {};
 }

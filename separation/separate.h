@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "materials/analytic_brdf.h"
 #include "materials/measured_brdf.h"
 #include "materials/separated_tables.h"
 
@@ -43,6 +44,10 @@ enum class DiffuseForm {
 [[nodiscard]] std::string name_of(DiffuseForm form);           ///< "lambert", "table"
 [[nodiscard]] std::string name_of(SpectralResidual residual);  ///< "whole", "printed"
 
+/// Terms of the residual where it is asked for: RGB files have at most three, and at 195 wavelengths more
+/// than these change no picture by 0.1 dB (docs/separation.md).
+inline constexpr int kDefaultResidualRank = 4;
+
 struct SeparationOptions {
   HalfDifferenceGrid grid;  ///< paper: 90 x 90 x 180; spacing of theta_h: separation.md
   CosineWeight weight = CosineWeight::kProduct;
@@ -56,19 +61,17 @@ struct SeparationOptions {
   /// soon as the data of a cell are worth more; >= 0. Default: enough to decide what is undetermined, too
   /// little to move the rest (docs/separation.md).
   double diffraction_prior = 0.01;
-  int threads = 0;  ///< 0 = all cores
+  /// Terms of the model kResidual, at most kMaxResidualRank; 0: not fitted, which saves its time.
+  int residual_rank = 0;
+  bool analytic = false;  ///< also fit the model of sec. 5.3, Lambert + GGX at each wavelength
+  int threads = 0;        ///< 0 = all cores
 
   /// Empty where valid, else which field breaks which rule.
   [[nodiscard]] std::string problem() const;
 };
 
-/// The parameters of eqs. 11-15.
-struct AnalyticFit {
-  double albedo_d = 0;  ///< alpha_d, [0, 1]
-  double rho_0 = 0;     ///< >= 0
-  double f_0 = 0;       ///< [0, 1]
-  double alpha = 0;     ///< GGX a, [1e-3, 1]
-};
+/// The parameters of eqs. 11-15, of the achromatic BRDF.
+using AnalyticFit = AnalyticParameters;
 
 struct SeparationReport {
   bool usable = true;   ///< false: no cell was measured, or step 1 did not converge from any start
@@ -86,6 +89,9 @@ struct SeparationReport {
   double lambert_cost = 0, specular_share = 0;
   /// [axis] root mean square of ln(ρ w + ε) less ln(model w + ε) over the measured cells (eqs. 18-20).
   std::vector<double> rms_sun, rms_fresnel, rms_diffraction;
+  double residual_explained = 0;      ///< share of the squared residual that the terms explain, 0 where none
+  double residual_clamped_share = 0;  ///< of their ratios, beyond what a byte holds
+  double seconds_residual = 0, seconds_analytic = 0;
   double seconds_table = 0, seconds_step1 = 0, seconds_step2 = 0, seconds_step3 = 0;
   std::size_t cells = 0, below_horizon = 0, measured = 0, extrapolated = 0, unmeasured = 0;  ///< of the grid
   std::size_t negative_values = 0;  ///< of the file, clamped to 0

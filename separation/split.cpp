@@ -52,7 +52,8 @@ double optimum_cost(const CellTable& table, const AnalyticFit& fit, const Separa
       const std::size_t group = std::size_t(h) * table.grid.n_theta_d + d;
       for (std::size_t i = table.begin[group]; i < table.begin[group + 1]; ++i) {
         const double mean = double(table.mean[i]);
-        const double ggx = ggx_value(fit, cos_h, cos_d, double(table.cos_i[i]), double(table.cos_o[i]));
+        const double ggx =
+            analytic_specular(fit, cos_h, cos_d, double(table.cos_i[i]), double(table.cos_o[i]));
         const double x = split_cell(mean, lambert, ggx, options.eta_diffuse, options.eta_specular);
         cost += double(table.weight[i]) * (options.eta_diffuse * std::abs(x - lambert) +
                                            options.eta_specular * std::abs(mean - x - ggx));
@@ -71,7 +72,7 @@ std::vector<float> diffuse_table(const CellTable& table, double lambert) {
     const double lambert_q = lambert * 2 * std::cos(grid.theta_h(double(group / grid.n_theta_d))) *
                              std::cos(grid.theta_d(double(group % grid.n_theta_d)));
     const float mean = table.mean_q[cell];
-    shape[cell] = mean < 0 ? -1.0F : static_cast<float>(std::min(double(mean) / lambert_q, 1.0));
+    shape[cell] = mean < 0 ? kNoValue : static_cast<float>(std::min(double(mean) / lambert_q, 1.0));
   }
   fill_unmeasured(grid, shape);
   return shape;
@@ -88,7 +89,7 @@ std::vector<float> specular_table(const CellTable& table, double lambert) {
       for (int p = 0; p < grid.n_phi_d; ++p) {
         const std::size_t cell = grid.index(h, d, p);
         const float mean = table.mean_q[cell];
-        rho_s[cell] = mean < 0 ? -1.0F : static_cast<float>(std::max(double(mean) - lambert_q, 0.0));
+        rho_s[cell] = mean < 0 ? kNoValue : static_cast<float>(std::max(double(mean) - lambert_q, 0.0));
       }
     }
   }

@@ -14,7 +14,7 @@
 namespace spectrace {
 namespace {
 
-/// The nodes of one theta_h; rows without a value stay at -1.
+/// The nodes of one theta_h; rows without a value keep kNoValue.
 void tabulate_slice(const MeasuredBrdf& measured, int h, HalfDifferenceTable& table) {
   const HalfDifferenceGrid& grid = table.grid;
   const std::size_t n = table.axis.size();
@@ -46,7 +46,7 @@ void tabulate_slice(const MeasuredBrdf& measured, int h, HalfDifferenceTable& ta
 HalfDifferenceTable tabulate(const MeasuredBrdf& measured, const SeparationOptions& options) {
   HalfDifferenceTable table{.grid = options.grid, .axis = measured.axis(), .q = {}};
   const std::size_t n = table.axis.size();
-  table.q.assign(table.grid.size() * n, -1.0F);
+  table.q.assign(table.grid.size() * n, kNoValue);
   with_threads(options.threads, [&] {
     parallel_chunks(std::size_t(table.grid.n_theta_h),
                     [&](std::size_t h) { tabulate_slice(measured, static_cast<int>(h), table); });

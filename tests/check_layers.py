@@ -27,6 +27,7 @@ DOORS = {
     "Eigen": (r"Eigen/|unsupported/Eigen/", r"separation/.+"),
     "tinyobjloader": (r"tiny_obj_loader", r"renderer/mesh\.cpp"),
     "oneTBB": (r"tbb/|oneapi/", r"(separation|renderer)/.+\.cpp"),
+    "Zstandard": (r"zstd", r"materials/packed_table\.cpp"),
     "CLI11": (r"CLI/", r"cli/.+"),
     "fmt": (r"fmt/", r".+\.cpp"),
 }

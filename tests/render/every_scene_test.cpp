@@ -42,7 +42,7 @@ TEST_P(EveryScene, LayersSumToBeauty) {
       for (int c = 0; c < 15; ++c) largest = std::max(largest, std::abs(double(image.at(x, y, c))));
       for (int c = 0; c < 3; ++c) {
         double sum = 0;
-        for (int layer = 1; layer < kLayerCount; ++layer) sum += image.at(x, y, 3 * layer + c);
+        for (int layer = 1; layer < int(LayerSet::kLobes); ++layer) sum += image.at(x, y, 3 * layer + c);
         EXPECT_NEAR(sum, image.at(x, y, c), 1e-5 * largest) << x << ", " << y << ", channel " << c;
       }
     }

@@ -12,7 +12,7 @@
 namespace spectrace {
 namespace {
 
-/// Eqs. 12-15 letter by letter; dies of tan θ and cos θ near the horizon, where ggx_value must not.
+/// Eqs. 12-15 letter by letter; dies of tan θ and cos θ near the horizon, where analytic_specular must not.
 double ggx_as_printed(const AnalyticFit& fit, double cos_h, double cos_d, double cos_i, double cos_o) {
   const double a2 = fit.alpha * fit.alpha;
   const double f = fit.f_0 + (1 - fit.f_0) * std::pow(1 - cos_d, 5);
@@ -30,7 +30,7 @@ SeparationOptions small_grid() {
 
 CellTable material(const AnalyticFit& fit, const SeparationOptions& options) {
   return test::synthetic_cells(options, [&](double h, double d, double i, double o) {
-    return fit.albedo_d / std::numbers::pi + ggx_value(fit, h, d, i, o);
+    return fit.albedo_d / std::numbers::pi + analytic_specular(fit, h, d, i, o);
   });
 }
 
@@ -40,11 +40,11 @@ TEST(AnalyticFit, GgxIsWhatThePaperPrints) {
     for (double cos_o : {0.1, 0.9}) {
       for (double cos_h : {0.3, 0.99, 1.0}) {
         const double expected = ggx_as_printed(fit, cos_h, 0.6, cos_i, cos_o);
-        EXPECT_NEAR(ggx_value(fit, cos_h, 0.6, cos_i, cos_o) / expected, 1, 1e-12);
+        EXPECT_NEAR(analytic_specular(fit, cos_h, 0.6, cos_i, cos_o) / expected, 1, 1e-12);
       }
     }
   }
-  EXPECT_TRUE(std::isfinite(ggx_value(fit, 0.01, 0.01, 1e-12, 1e-12)));
+  EXPECT_TRUE(std::isfinite(analytic_specular(fit, 0.01, 0.01, 1e-12, 1e-12)));
 }
 
 TEST(AnalyticFit, GradientAgreesWithDifferences) {

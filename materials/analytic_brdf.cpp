@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "materials/analytic_brdf.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/math/math.h"
+#include "materials/lambert.h"
+
+namespace spectrace {
+namespace {
+
+// Half the samples to each lobe where there are two: the lobe that either of them misses is bounded by 2.
+constexpr Float kSpecularShare = Float(0.5);
+
+/// G(θ) / (2 cosθ) of eq. 15: bounded by 1/a where G and cosθ both vanish.
+double masking_over_cosine(double cosine, double a2) {
+  return 1 / (cosine + std::sqrt(cosine * cosine + a2 * (1 - cosine * cosine)));
+}
+
+}  // namespace
+
+double analytic_specular(const AnalyticParameters& p, double cos_h, double cos_d, double cos_i,
+                         double cos_o) {
+  const double fresnel = p.f_0 + (1 - p.f_0) * std::pow(1 - cos_d, 5);  // eq. 13
+  const double a2 = p.alpha * p.alpha, cos2 = cos_h * cos_h;
+  const double t = a2 * cos2 + (1 - cos2);             // (a² - 1) cos² + 1 without cancellation
+  const double ndf = a2 / (std::numbers::pi * t * t);  // eq. 14
+  return p.rho_0 * fresnel * ndf * masking_over_cosine(cos_i, a2) * masking_over_cosine(cos_o, a2);
+}
+
+AnalyticBrdf::AnalyticBrdf(SpectralAxis axis, const std::vector<float>& parameters) : axis_(std::move(axis)) {
+  const std::size_t n = axis_.size();
+  SPECTRACE_CHECK(parameters.size() == 4 * n);
+  auto at = std::make_shared<std::vector<AnalyticParameters>>(n);
+  double log_alpha = 0;
+  bool is_specular = false;
+  for (std::size_t k = 0; k < n; ++k) {
+    (*at)[k] = {.albedo_d = double(parameters[k]),
+                .rho_0 = double(parameters[n + k]),
+                .f_0 = double(parameters[2 * n + k]),
+                .alpha = double(parameters[3 * n + k])};
+    log_alpha += std::log((*at)[k].alpha) / double(n);
+    is_specular = is_specular || (*at)[k].rho_0 > 0;
+  }
+  albedo_d_.assign(parameters.begin(), parameters.begin() + std::ptrdiff_t(n));
+  const Float alpha = std::clamp(Float(std::exp(log_alpha)), kMinAlpha, Float(1));
+  lobe_ = {alpha, alpha};
+  specular_share_ = is_specular ? kSpecularShare : 0;
+  at_ = std::move(at);
+}
+
+SampledSpectrum AnalyticBrdf::specular(Vec3 wo, Vec3 wi, const SpectralAxis::Lookup& lookup) const {
+  const Vec3 sum = wo + wi;
+  const Float norm = length(sum);  // 2 cosθ_d
+  if (specular_share_ == 0 || !(norm > 0)) return {};
+  const auto value = [&](std::size_t k) {
+    return Float(
+        analytic_specular((*at_)[k], double(sum.z / norm), double(norm) / 2, double(wi.z), double(wo.z)));
+  };
+  if (axis_.is_rgb()) {
+    const std::array<float, 3> rgb{float(value(0)), float(value(1)), float(value(2))};
+    return lookup.apply(rgb.data());
+  }
+  SampledSpectrum result;  // values between wavelengths, not parameters: what a table would hold
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Float fraction = lookup.fraction[lane];
+    result[int(lane)] =
+        (1 - fraction) * value(lookup.index[lane]) + fraction * value(lookup.index[lane] + lookup.upper);
+  }
+  return result;
+}
+
+Float AnalyticBrdf::pdf(Vec3 wo, Vec3 wi) const {
+  const Float cosine = wi.z * kInvPi;
+  if (specular_share_ == 0) return cosine;
+  return specular_share_ * lobe_.reflect(wo, wi).pdf + (1 - specular_share_) * cosine;
+}
+
+BsdfValue AnalyticBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  if (!(wo.z > 0 && wi.z > 0)) return {};
+  return {.value_cos = evaluate_lobes(wo, wi, at).total(), .pdf = pdf(wo, wi)};
+}
+
+LobeValues AnalyticBrdf::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
+  if (!(wo.z > 0 && wi.z > 0)) return {};
+  const SpectralAxis::Lookup lookup = axis_.lookup(at.lambda);
+  return {.diffuse = lookup.apply(albedo_d_.data()) * (wi.z * kInvPi),
+          .fresnel = specular(wo, wi, lookup) * wi.z};
+}
+
+std::optional<BsdfSample> AnalyticBrdf::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
+  if (!(wo.z > 0)) return std::nullopt;
+  const bool is_specular = u.lobe < specular_share_;
+  const Vec3 wi = is_specular ? lobe_.sample(wo, u.direction) : sample_cosine_hemisphere(u.direction);
+  const BsdfValue value = evaluate(wo, wi, at);
+  if (!std::isnormal(value.pdf)) return std::nullopt;  // 1 / pdf overflows below the normal numbers
+  return BsdfSample{.wi = wi,
+                    .weight = value.value_cos / value.pdf,
+                    .pdf = value.pdf,
+                    .lobe = is_specular ? Lobe::kSpecular : Lobe::kDiffuse};
+}
+
+}  // namespace spectrace

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The residual model: a few terms in direction x wavelength for what the diffraction model leaves (ADR 0007).
+#pragma once
+
+#include "materials/measured_brdf.h"
+#include "materials/separated_tables.h"
+
+namespace spectrace {
+
+struct ResidualReport {
+  /// Share of the squared residual, weighted by solid angle, that the terms explain: 1 for RGB.
+  double explained = 0;
+  double clamped_share = 0;  ///< of all ratios: beyond what a byte times the step holds
+};
+
+/// Principal components of (X - diffraction model) / M over the axis, M the model's mean at each node; at
+/// most `rank` of them, in [1, kMaxResidualRank], fewer where fewer explain all. Fits to every node that has
+/// a value. The same for any number of threads; runs on those of with_threads().
+ResidualTable fit_residual(const MeasuredBrdf& measured, const SeparatedTables& tables, std::size_t rank,
+                           ResidualReport& report);
+
+}  // namespace spectrace
