@@ -32,8 +32,8 @@ ScatteredSamples parse_scattered(std::string_view text, const std::string& file_
 
 /// An isotropic, reciprocal and mirror-symmetric BRDF through the samples: at any pair of directions a
 /// weighted linear fit to ln(f + ε) of the nearest samples, clamped to their range. Near is told in
-/// (√θh, 0.6 θd, sinθh sinθd |cos φd|): of 40 parametrisations the one in which three car paints of
-/// Cornell predict their own samples best (docs/bring-your-own-data.md).
+/// (√θh, 0.6 θd, sinθh sinθd |cos φd|): of those tried the one in which Cornell's paints predict samples left
+/// out best (docs/bring-your-own-data.md).
 class ScatteredBrdf final : public BrdfSource {
  public:
   explicit ScatteredBrdf(const ScatteredSamples& samples);
