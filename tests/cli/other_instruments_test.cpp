@@ -2,7 +2,7 @@
 // Measurements of other instruments go every way that one of the EPFL database does.
 #include <fstream>
 
-#include "materials/separated_tables.h"
+#include "materials/tensor_file.h"
 #include "tests/cli/program.h"
 #include "tests/support/foreign_files.h"
 
@@ -32,7 +32,9 @@ class OtherInstruments : public Program {
     ASSERT_EQ(separated.exit_code, 0) << separated.output << separated.errors;
     EXPECT_TRUE(separated.says(format)) << separated.output;
     EXPECT_NE(read_text(folder_ / "m.json").find("\"format\""), std::string::npos);
-    EXPECT_EQ(read_separated(folder_ / "m.sep").axis.size(), axis);
+    const TensorFile sep = TensorFile::read(folder_ / "m.sep");
+    ASSERT_NE(sep.find("c_d"), nullptr);
+    EXPECT_EQ(sep.find("c_d")->count(), axis);
     const ProgramResult inspected = run({"inspect", file});
     EXPECT_EQ(inspected.exit_code, 0) << inspected.errors;
     EXPECT_TRUE(inspected.says(format) && inspected.says("filled_cells")) << inspected.output;

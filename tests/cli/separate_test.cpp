@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "materials/measured_tables.h"
-#include "materials/separated_tables.h"
+#include "materials/separated_lookup.h"
 #include "tests/cli/program.h"
 #include "tests/support/synthetic_measured.h"
 
@@ -26,7 +26,7 @@ TEST_F(Separate, WritesAMaterialAndReportsOnIt) {
   EXPECT_TRUE(separated.says("step 1")) << separated.output;
   EXPECT_NE(read_text(folder_ / "m.report.json").find("step1"), std::string::npos);
   EXPECT_EQ(run({"inspect", "m.sep"}).exit_code, 0);
-  EXPECT_NO_THROW(read_separated(folder_ / "m.sep"));
+  EXPECT_NO_THROW(read_separated_source(folder_ / "m.sep"));
 }
 
 TEST_F(Separate, AcquireRefusesWhatItCannotMeasure) {
