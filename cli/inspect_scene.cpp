@@ -34,9 +34,11 @@ std::vector<InspectCell> describe(const MaterialDesc& material) {
             return std::pair<std::string, std::string>("measured", m.file.string());
           },
           [](const SeparatedDesc& s) {
-            return std::pair<std::string, std::string>(
-                "separated",
-                fmt::format("{}, model {}", s.file.string(), s.analytic ? "analytic" : s.model ? name_of(*s.model) : "richest"));
+            return std::pair<std::string, std::string>("separated",
+                                                       fmt::format("{}, model {}", s.file.string(),
+                                                                   s.analytic ? "analytic"
+                                                                   : s.model  ? name_of(*s.model)
+                                                                              : "richest"));
           }},
       material.kind);
   return {material.name, type, detail};

@@ -31,6 +31,7 @@ struct Arguments {
   int threads = 0;
   std::string separate;  // a model's name, "auto", or empty
   double tolerance = kDefaultTolerance;
+  bool paired = false;
   std::string cache;
   bool strict = false;
   bool layer_pngs = false;
@@ -58,21 +59,33 @@ fs::path output_file(const Arguments& arguments) {
   return file;
 }
 
-/// Every measured material becomes its separated form.
-void separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& progress) {
+/// Every measured material becomes its separated form, or with --paired alone draws its directions. False,
+/// with the reason noted, where one cannot.
+bool separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& progress) {
   const fs::path cache = arguments.cache.empty() ? default_cache() : fs::path(arguments.cache);
   const std::optional<SeparationModel> model = separation_model_named(arguments.separate);  // none: auto
   SeparationOptions options;
   options.threads = arguments.threads;
-  options.residual_rank = !model || model == SeparationModel::kResidual ? kDefaultResidualRank : 0;
+  const bool may_need_residual = arguments.separate == "auto" || model == SeparationModel::kResidual;
+  options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
   std::size_t count = 0;
   for (MaterialDesc& material : scene.materials) {
     if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
       const CachedSeparation separated = cached_separation(measured->file, cache, options, progress);
+      if (!separated.report.usable) {
+        progress.note(fmt::format("{}: {}", measured->file.string(), separated.report.verdict));
+        return false;
+      }
       progress.note(fmt::format("{}: {} {}", material.name,
                                 separated.was_cached ? "separated before," : "separated into",
                                 separated.file.string()));
-      SeparatedDesc description{separated.file, model};
+      const fs::path directions = arguments.paired ? separated.file : fs::path();
+      ++count;
+      if (arguments.separate.empty()) {
+        material.kind = MeasuredDesc{measured->file, directions};
+        continue;
+      }
+      SeparatedDesc description{.file = separated.file, .model = model, .directions = directions};
       if (!model) {
         const ModelChoice choice = choose_model(MeasuredBrdf(read_measured(measured->file)),
                                                 read_separated_source(separated.file), arguments.tolerance);
@@ -80,12 +93,12 @@ void separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& 
         description.model = choice.model;
       }
       material.kind = description;
-      ++count;
     }
   }
   if (count == 0) {
     progress.note(fmt::format("{}: no measured material to separate", scene.file_name));
   }
+  return true;
 }
 
 void print_summary(const fs::path& file, const RenderOptions& options, const RenderResult& result) {
@@ -118,9 +131,12 @@ ExitCode render_command(const Arguments& arguments) {
   ConsoleProgress progress;
   const fs::path file = output_file(arguments);
   SceneDesc description = load_scene(arguments.scene);
-  if (!arguments.separate.empty()) {
-    separate_materials(description, arguments, progress);
+  if ((!arguments.separate.empty() || arguments.paired) &&
+      !separate_materials(description, arguments, progress)) {
+    return ExitCode::kDiffers;
   }
+  // Roulette follows the throughput: with it paths of different materials would part.
+  if (arguments.paired) description.integrator.roulette_depth = description.integrator.max_depth;
   const Scene scene = build_scene(description, progress);
   const RenderOptions options{.spp = arguments.spp.value_or(scene.spp),
                               .seed = arguments.seed.value_or(scene.seed),
@@ -131,6 +147,7 @@ ExitCode render_command(const Arguments& arguments) {
   if (!arguments.separate.empty()) {
     metadata["spectrace:separation"] = arguments.separate;
   }
+  metadata["spectrace:paired"] = std::int64_t(arguments.paired);
   write_images(file, result.image, metadata, arguments);
   progress.finish();
   print_summary(file, options, result);
@@ -159,6 +176,9 @@ void add_render(CLI::App& app, Action& chosen) {
                  "of --separate auto: share of the reflected light a model may get wrong")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  app.add_flag("--paired", arguments->paired,
+               "for comparing pictures: whatever describes a measured material, draw the directions that its "
+               "diffraction model draws, so that pictures share their noise");
   app.add_option("--cache", arguments->cache,
                  "folder that keeps separated materials; default: ~/.cache/spectrace");
   app.add_option("--exposure", arguments->exposure, "factor on the PNG, not on the EXR")

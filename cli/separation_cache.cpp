@@ -24,10 +24,10 @@ constexpr std::size_t kHashDigits = 16;  // 64 bits: no two materials of one fol
 /// Everything but the thread count, which changes no bit of the result.
 std::string key_of(const std::string& file_sha256, const SeparationOptions& o) {
   const std::string text = fmt::format(
-      "{} v{} grid {} {} {} {} weight {} eps {} eta {} {} starts {} prior {} {} {} {} terms {}", file_sha256,
+      "{} v{} grid {} {} {} {} weight {} eps {} starts {} prior {} {} {} {} terms {}", file_sha256,
       kMethodVersion, o.grid.n_theta_h, o.grid.n_theta_d, o.grid.n_phi_d, o.grid.quadratic_theta_h,
-      static_cast<int>(o.weight), o.epsilon, o.eta_diffuse, o.eta_specular, o.starts, o.diffraction_prior,
-      name_of(o.diffuse), name_of(o.residual), name_of(o.colour), o.residual_rank);
+      static_cast<int>(o.weight), o.epsilon, o.starts, o.diffraction_prior, name_of(o.diffuse),
+      name_of(o.residual), name_of(o.colour), o.residual_rank);
   return sha256_hex(std::as_bytes(std::span(text))).substr(0, kHashDigits);
 }
 
@@ -71,8 +71,10 @@ CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std:
   if (cached.was_cached) return cached;
 
   SeparationResult result = separate_bytes(bytes, sha256, bsdf, options, progress);
-  if (!result.report.usable)
-    throw InputError(bsdf.string(), {}, "cannot be separated: " + result.report.verdict);
+  if (!result.report.usable) {
+    cached.report = std::move(result.report);
+    return cached;
+  }
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(folder.string(), {}, "cannot make this folder: " + failed.message());

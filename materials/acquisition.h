@@ -34,8 +34,8 @@ struct AcquisitionOptions {
   /// 1: isotropic. Otherwise the incident azimuths in [4, 64] over 360°/symmetry, both ends included.
   int azimuths = 1;
   int symmetry = 1;    ///< 1, 2 (point symmetric) or 4 (mirror symmetric about x and y); needs azimuths > 1
-  int ndf_size = 128;  ///< nodes of the normal distribution over elevation, in [8, 512]
-  int ndf_azimuths = 32;  ///< and over azimuth, in [4, 128]; used where azimuths > 1
+  int ndf_size = 128;  ///< nodes of the normal distribution over elevation, in [8, 256]
+  int ndf_azimuths = 32;  ///< and over azimuth, in [5, 65]; used where azimuths > 1
   int warp_size = 128;    ///< side of the visible-normal tables, in [8, 512]
   int table_size = 32;    ///< side of the spectra tables, in [4, 256]
   /// Of a material; increasing, at least one. Other sources have an axis of their own.

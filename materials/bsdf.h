@@ -45,6 +45,9 @@ struct BsdfSample {
   bool is_delta = false;
   /// wi depends on wavelength: the caller must terminate the secondary wavelengths; `weight` is the hero's.
   bool is_dispersive = false;
+  /// (η_o / η_i)² of a refraction, part of `weight`: radiance is squeezed into a smaller cone and comes back
+  /// when the path leaves, so that roulette must not count it as loss (Veach 1997, sec. 5.3.2).
+  Float radiance_scale = 1;
 };
 
 /// The random numbers of one BSDF sample, each in [0, 1].

@@ -34,7 +34,8 @@ std::optional<BsdfSample> Dielectric::sample(Vec3 wo, const BsdfRandom& u, const
                     .pdf = 1 - probability,
                     .lobe = Lobe::kSpecular,
                     .is_delta = true,
-                    .is_dispersive = !eta.is_constant()};
+                    .is_dispersive = !eta.is_constant(),
+                    .radiance_scale = 1 / sqr(eta_hero)};
 }
 
 }  // namespace spectrace

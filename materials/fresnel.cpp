@@ -28,11 +28,14 @@ Complex complex_sqrt(Complex z) {
 }
 
 /// Airy's sum over the waves reflected inside a transparent film, for one polarisation: `top` is the
-/// amplitude reflected at its upper face, `bottom` at its lower. Born & Wolf 1999, sec. 7.6, eq. 7, squared.
+/// amplitude reflected at its upper face, `bottom` at its lower. Born & Wolf 1999, sec. 7.6, eq. 7, squared:
+/// as a quotient of squares, which rounding cannot make negative.
 Float film_reflectance(Float top, Complex bottom, Float cos_phase, Float sin_phase) {
-  const Float top2 = sqr(top), bottom2 = sqr(bottom.re) + sqr(bottom.im);
-  const Float interference = 2 * top * (bottom.re * cos_phase - bottom.im * sin_phase);
-  return (top2 + bottom2 + interference) / (1 + top2 * bottom2 + interference);
+  const Complex back{bottom.re * cos_phase - bottom.im * sin_phase,
+                     bottom.re * sin_phase + bottom.im * cos_phase};
+  const Float reflected = sqr(top + back.re) + sqr(back.im);
+  const Float all = sqr(1 + top * back.re) + sqr(top * back.im);
+  return all > 0 ? std::min(reflected / all, Float(1)) : Float(1);  // 0/0 at grazing, where both faces mirror
 }
 
 }  // namespace
@@ -58,7 +61,7 @@ Float fresnel_conductor(Float cos_i, Float eta, Float k) {
   const Float rs = (q2 + cos2 - two_a_cos) / (q2 + cos2 + two_a_cos);
   const Float even = cos2 * q2 + sqr(sin2), odd = two_a_cos * sin2;
   const Float rp = rs * (even - odd) / (even + odd);
-  return (rs + rp) / 2;
+  return std::max((rs + rp) / 2, Float(0));  // an index near 1 leaves the rounding of either sign
 }
 
 SampledSpectrum fresnel_schlick(Float cos_i, const SampledSpectrum& f0) {
@@ -70,6 +73,7 @@ SampledSpectrum fresnel_schlick(Float cos_i, const SampledSpectrum& f0) {
 Float fresnel_thin_film(Float cos_i, Float lambda_nm, Float film_eta, Float thickness_nm, Float base_eta,
                         Float base_k) {
   if (cos_i <= 0) return 1;
+  if (thickness_nm == 0) return fresnel_conductor(cos_i, base_eta, base_k);
   const Float sin2 = std::max(1 - sqr(cos_i), Float(0));
   const Float n2_film = sqr(film_eta);
   const Complex n2_base{sqr(base_eta) - sqr(base_k), 2 * base_eta * base_k};

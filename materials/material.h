@@ -38,12 +38,15 @@ using Material = std::variant<Lambert, SmoothConductor, RoughConductor, Dielectr
 /// A measured file, not yet read.
 struct MeasuredDesc {
   std::filesystem::path file;
+  /// A `.sep` file whose diffraction model draws the directions instead (PairedBrdf); empty: its own density.
+  std::filesystem::path directions{};
 };
 /// A `.sep` file, not yet read, and the model to render it with: without one the richest that the file holds.
 struct SeparatedDesc {
   std::filesystem::path file;
   std::optional<SeparationModel> model{};
-  bool analytic = false;  ///< the analytic model instead
+  bool analytic = false;               ///< the analytic model instead
+  std::filesystem::path directions{};  ///< as MeasuredDesc::directions
 };
 /// Analytic materials are plain already; measured ones name their files.
 struct MaterialDesc {

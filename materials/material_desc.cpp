@@ -2,6 +2,7 @@
 // Materials from JSON; the forms are documented in docs/materials.md.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -149,8 +150,8 @@ Diffractive parse_diffractive(const JsonValue& json) {
 
 SeparatedDesc parse_separated(const JsonValue& json) {
   SeparatedDesc separated{.file = json.require("file").path()};
-  const std::string model =
-      json.get("model").choice("richest", {"richest", "sun", "fresnel", "diffraction", "residual", "analytic"});
+  const std::string model = json.get("model").choice(
+      "richest", {"richest", "sun", "fresnel", "diffraction", "residual", "analytic"});
   separated.model = separation_model_named(model);
   separated.analytic = model == "analytic";
   return separated;
@@ -188,11 +189,22 @@ AnalyticBrdf build_analytic(const std::filesystem::path& file, const SeparatedSo
       source);
 }
 
+/// The values themselves, or paired with the directions of a `.sep` file.
+template <typename Values>
+Material with_directions(Values values, const std::filesystem::path& directions) {
+  if (directions.empty()) return values;
+  const SeparatedSource source = read_separated_source(directions);
+  return PairedBrdf(std::move(values),
+                    SeparatedBrdf(source, std::min(richest_model(source), SeparationModel::kDiffraction)));
+}
+
 struct Builder {
-  Material operator()(const MeasuredDesc& m) const { return MeasuredBrdf(read_measured(m.file)); }
+  Material operator()(const MeasuredDesc& m) const {
+    return with_directions(MeasuredBrdf(read_measured(m.file)), m.directions);
+  }
   Material operator()(const SeparatedDesc& s) const {
     const SeparatedSource source = read_separated_source(s.file);
-    if (s.analytic) return build_analytic(s.file, source);
+    if (s.analytic) return with_directions(build_analytic(s.file, source), s.directions);
     const SeparationModel richest = richest_model(source), model = s.model.value_or(richest);
     if (model > richest) {
       throw InputError(s.file.string(), {},
@@ -200,7 +212,7 @@ struct Builder {
                                    "--model {}",
                                    name_of(model), name_of(richest), name_of(model)));
     }
-    return SeparatedBrdf(source, model);
+    return with_directions(SeparatedBrdf(source, model), s.directions);
   }
   template <typename Analytic>
   Material operator()(const Analytic& material) const {

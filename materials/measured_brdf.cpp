@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/math/math.h"
+#include "materials/normal_square.h"
 
 namespace spectrace {
 
@@ -23,15 +24,6 @@ constexpr Float kLeastPole = Float(1e-11);
 /// Least density of sampling a cell, relative to its mean over the spectral axis. The stored luminance is
 /// that of the eye, 0 for what reflects only in the infrared; the mean bounds the weights there too.
 constexpr float kSamplingFloor = 0.125f;
-
-/// The unit-square coordinates of an angle: dense towards the normal, where specular lobes need it.
-Float polar_coordinate(Float theta_rad) { return std::sqrt(theta_rad * (2 / kPi)); }
-Float polar_angle(Float coordinate) { return sqr(coordinate) * (kPi / 2); }
-Float azimuth_coordinate(Float phi_rad) {
-  const Float v = (phi_rad + kPi) / (2 * kPi);
-  return v - std::floor(v);
-}
-Float azimuth_angle(Float coordinate) { return (2 * coordinate - 1) * kPi; }
 
 /// Rotations by half a turn and mirrors: a sign for x and one for y, their own inverse.
 struct Flip {

@@ -27,6 +27,8 @@ class PairedBrdf {
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
+  /// The values, where they are a measurement's.
+  [[nodiscard]] const MeasuredBrdf* measured() const { return std::get_if<MeasuredBrdf>(&values_); }
   [[nodiscard]] bool has_specular_parts() const {
     const auto* separated = std::get_if<SeparatedBrdf>(&values_);
     return separated != nullptr && separated->has_specular_parts();

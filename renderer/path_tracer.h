@@ -270,6 +270,7 @@ class PathTracer {
       }
     }
     beta_ *= s->weight;
+    if constexpr (kFeatures.transmission) radiance_scale_ *= s->radiance_scale;
     if (!beta_.is_finite() || !is_finite(wi)) {
       value_.valid = false;
       return false;
@@ -301,7 +302,7 @@ class PathTracer {
     if constexpr (kFeatures.indirect) {
       const int next = int(vertex_) + 1;
       if (next >= scene_.integrator.roulette_depth && next < scene_.integrator.max_depth) {
-        const Float survival = std::clamp(beta_.max(), kMinSurvival, kMaxSurvival);
+        const Float survival = std::clamp(beta_.max() / radiance_scale_, kMinSurvival, kMaxSurvival);
         if (!(sampler_.get1d(vertex_, VertexDimension::kRoulette) < survival)) return false;
         beta_ *= 1 / survival;
       }
@@ -314,6 +315,7 @@ class PathTracer {
   SampledWavelengths lambda_;
   std::uint32_t vertex_ = 0;
   SampledSpectrum beta_{1};
+  Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
   std::array<LaneSums, kLayerCount> sums_{};
   PathValue value_;
   bool has_share_ = false;      // a non-delta hit has split the path into lobes

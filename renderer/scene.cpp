@@ -45,7 +45,8 @@ std::string digest_of(const MaterialDesc& material) {
 }
 
 Float last_measured_cosine(const Material& material) {
-  const auto* measured = std::get_if<MeasuredBrdf>(&material);
+  const auto* paired = std::get_if<PairedBrdf>(&material);
+  const auto* measured = paired != nullptr ? paired->measured() : std::get_if<MeasuredBrdf>(&material);
   return measured == nullptr ? 0 : std::max(Float(0), std::cos(Float(measured->last_measured_theta_i())));
 }
 

@@ -25,7 +25,9 @@ EnvironmentDesc parse_environment(const JsonValue& json) {
   } else if (!radiance.exists()) {
     json.error("an environment needs a \"file\", a \"radiance\", or both");
   }
-  light.radiance = parse_spectrum(radiance, SpectrumRole::kEmission, light.radiance);
+  // An image is light already: multiplied by another light's spectrum it would carry the illuminant twice.
+  light.radiance = parse_spectrum(radiance, file.exists() ? SpectrumRole::kFactor : SpectrumRole::kEmission,
+                                  light.radiance);
   light.scale = static_cast<Float>(json.get("scale").number(light.scale, kNonNegativeFloat));
   light.to_world = parse_transform(transform);
   if (!is_rotation(light.to_world)) {

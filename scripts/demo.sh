@@ -14,7 +14,7 @@ spectrace=build/release/cli/spectrace
 out=demo-out
 mkdir -p "$out"
 scene=${1:-scenes/material_ball.json}
-models=(sun fresnel diffraction)
+models=(sun fresnel diffraction residual)
 
 step() { printf '\n== %s\n' "$*"; }
 
@@ -23,18 +23,19 @@ if (($# == 0)) && [[ ! -e $out/pearlescent.bsdf || scenes/materials/pearlescent.
   "$spectrace" acquire scenes/materials/pearlescent.json -o "$out/pearlescent.bsdf"
 fi
 
+# --paired: all pictures share their random directions, so that what is compared is the material, not the noise.
 step "Render $scene: the measurement itself"
-"$spectrace" "$scene" -o "$out/raw.exr"
+"$spectrace" "$scene" --paired --cache "$out/separated" -o "$out/raw.exr"
 for model in "${models[@]}"; do
   step "Render it separated (once, kept in $out/separated), model $model"
-  "$spectrace" "$scene" --separate "$model" --cache "$out/separated" -o "$out/$model.exr"
+  "$spectrace" "$scene" --separate "$model" --paired --cache "$out/separated" -o "$out/$model.exr"
 done
 
 step "How close is each model to the measurement?"
-"$spectrace" compare "$out/raw.exr" "$out"/{sun,fresnel,diffraction}.exr
+"$spectrace" compare "$out/raw.exr" "$out"/{sun,fresnel,diffraction,residual}.exr
 
 step "The pictures"
-"$spectrace" sheet "$out/contact_sheet.png" "$out"/{raw,sun,fresnel,diffraction}.exr \
-  --labels "measured,sun,fresnel,diffraction"
+"$spectrace" sheet "$out/contact_sheet.png" "$out"/{raw,sun,fresnel,diffraction,residual}.exr \
+  --labels "measured,sun,fresnel,diffraction,residual"
 echo
 ls -1 "$out"/*.exr "$out"/*.png "$out"/separated/*.sep

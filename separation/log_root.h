@@ -27,13 +27,15 @@ struct LogRootSums {
 template <int B>
 class LogRoot {
  public:
-  /// Only the first `count` of the B unknowns are wanted.
-  LogRoot(const std::array<float, B>& towards, int count, double weight, double epsilon)
+  /// Only the first `count` of the B unknowns are wanted; none leaves [0, highest].
+  LogRoot(const std::array<float, B>& towards, int count, double weight, double epsilon,
+          const std::array<float, B>& highest)
       : weight_(weight), epsilon_(epsilon), towards_(towards), remaining_(count) {
     for (int k = 0; k < B; ++k) {
-      sigma_[k] = std::clamp(std::log(std::max(double(towards[k]), kSmallest)), std::log(kStart), kHighest);
+      sigma_[k] = std::clamp(std::log(std::max(double(towards[k]), kSmallest)), std::log(kStart),
+                             std::log(double(highest[k])));
       low_[k] = std::log(kSmallest);
-      high_[k] = kHighest;
+      high_[k] = std::log(double(highest[k]));
       s_[k] = static_cast<float>(std::exp(sigma_[k]));
       converged_[k] = k >= count;
     }
@@ -60,13 +62,10 @@ class LogRoot {
   }
 
  private:
-  // The range of s, whose mean over the axis is about 1. Below kZero it is 0. Above 16 lie only cells whose
-  // rho_s is all but 0 (up to 250 were seen, where an exact Lambert lobe is brighter than the mean and darker
-  // than one channel); interpolation would multiply such an s with a neighbour's rho_s.
+  // The mean of s over the axis is about 1. Below kZero it is 0.
   static constexpr double kSmallest = 1e-6, kZero = 1e-4, kStart = 1e-2;
-  static constexpr double kHighest = 2.772588722239781;  // ln 16
-  static constexpr double kTolerance = 1e-5;             // of ln s; the samples carry 1e-7 of float rounding
-  static constexpr int kMaxIterations = 60;              // bisection alone needs 22 for the range
+  static constexpr double kTolerance = 1e-5;  // of ln s; the samples carry 1e-7 of float rounding
+  static constexpr int kMaxIterations = 60;   // bisection alone needs 22 for the range
 
   void advance(int k, double gradient, double information) {
     const double s = double(s_[k]);

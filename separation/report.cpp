@@ -52,8 +52,6 @@ void write_options(JsonWriter& json, const SeparationOptions& options) {
   json.member("theta_h_spacing", spacing_of(options.grid));
   json.member("weight", name_of(options.weight));
   json.member("epsilon", options.epsilon);
-  json.member("eta_diffuse", options.eta_diffuse);
-  json.member("eta_specular", options.eta_specular);
   json.member("colour", name_of(options.colour));
   json.member("diffuse", name_of(options.diffuse));
   json.member("residual", name_of(options.residual));

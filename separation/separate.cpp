@@ -162,8 +162,6 @@ std::string SeparationOptions::problem() const {
     return "grid: each dimension must be at least 2";
   if (grid.size() > std::size_t(1) << 28) return "grid: at most 2^28 cells";
   if (!positive(epsilon)) return "epsilon must be > 0";
-  if (!positive(eta_diffuse)) return "eta_diffuse must be > 0";
-  if (!positive(eta_specular)) return "eta_specular must be > 0";
   if (starts < 1) return "starts must be at least 1";
   if (!(std::isfinite(diffraction_prior) && diffraction_prior >= 0)) return "diffraction_prior must be >= 0";
   if (residual_rank < 0 || residual_rank > int(kMaxResidualRank)) {

@@ -54,9 +54,8 @@ struct SeparationOptions {
   DiffuseColour colour = DiffuseColour::kDark;
   DiffuseForm diffuse = DiffuseForm::kLambert;
   SpectralResidual residual = SpectralResidual::kWhole;
-  double epsilon = 1e-3;                         ///< of eqs. 9 and 10; > 0; paper: 1e-3
-  double eta_diffuse = 0.9, eta_specular = 0.8;  ///< eq. 16; > 0; paper: 0.9, 0.8
-  int starts = 4;                                ///< of step 1's solver, at least 1
+  double epsilon = 1e-3;  ///< of eqs. 9 and 10; > 0; paper: 1e-3
+  int starts = 4;         ///< of step 1's solver, at least 1
   /// Draws s_D to s_F where the data say nothing: counts so many samples where rho_s vanishes, and fades as
   /// soon as the data of a cell are worth more; >= 0. Default: enough to decide what is undetermined, too
   /// little to move the rest (docs/separation.md).

@@ -19,6 +19,25 @@ namespace {
 // theta_d has up to 16,200 directions.
 constexpr double kFresnelPrior = 1;
 
+// How far above s_sun the spectra of a direction may lie (and above 1, where s_sun lies below). Beyond it are
+// only cells whose rho_s is all but 0 (up to 250 were seen, where an exact Lambert lobe is brighter than the
+// mean and darker than one channel); interpolation would multiply such an s with a neighbour's rho_s.
+constexpr float kHighestOverSun = 16;
+
+template <int B>
+std::array<float, std::size_t(B)> filled(float value) {
+  std::array<float, B> out{};
+  out.fill(value);
+  return out;
+}
+
+template <int B>
+std::array<float, std::size_t(B)> highest_of(const std::array<float, std::size_t(B)>& s_sun) {
+  std::array<float, B> out{};
+  for (int k = 0; k < B; ++k) out[k] = kHighestOverSun * std::max(s_sun[k], 1.0F);
+  return out;
+}
+
 /// Everything the fits of one block share.
 template <int B>
 struct Context {
@@ -26,6 +45,7 @@ struct Context {
   const LobeWeights& lobes;
   WavelengthBlock<B> block;
   double epsilon = 0, prior = 0;
+  float highest_sun = 0;  ///< no s_sun is larger: its mean over the axis is 1
   bool whole = true;      ///< SpectralResidual::kWhole
   std::size_t first = 0;  ///< of the axis
   int count = 0;          ///< wavelengths of this block that exist
@@ -69,7 +89,7 @@ void fit_sun(Context<B>& c) {
   const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
   std::array<float, B> start{};
   start.fill(1);
-  LogRoot<B> root(start, c.count, 0, c.epsilon);
+  LogRoot<B> root(start, c.count, 0, c.epsilon, filled<B>(c.highest_sun));
   std::vector<LogRootSums<B>> slices(n_h);
   while (!root.done()) {
     parallel_chunks(n_h, [&](std::size_t h) {
@@ -93,7 +113,7 @@ template <int B>
 void fit_fresnel(const Context<B>& c, SpectralFit& fit, std::size_t axis_size) {
   const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
   parallel_chunks(n_d, [&](std::size_t d) {
-    LogRoot<B> root(c.s_sun, c.count, kFresnelPrior, c.epsilon);
+    LogRoot<B> root(c.s_sun, c.count, kFresnelPrior, c.epsilon, highest_of<B>(c.s_sun));
     while (!root.done()) {
       LogRootSums<B> sums;
       for (std::size_t h = 0; h < n_h; ++h) add_samples<B>(c, h * n_d + d, root.at(), sums);
@@ -111,7 +131,7 @@ void fit_diffraction(const Context<B>& c, SpectralFit& fit, std::size_t axis_siz
     for (std::size_t d = 0; d < n_d; ++d) {
       std::array<float, B> s_fresnel{};
       std::copy_n(&fit.s_fresnel[d * axis_size + c.first], c.count, s_fresnel.begin());
-      LogRoot<B> root(s_fresnel, c.count, c.prior, c.epsilon);
+      LogRoot<B> root(s_fresnel, c.count, c.prior, c.epsilon, highest_of<B>(c.s_sun));
       while (!root.done()) {
         LogRootSums<B> sums;
         add_samples<B>(c, h * n_d + d, root.at(), sums);
@@ -173,12 +193,14 @@ void fit_blocks(const MeasuredBrdf& measured, const CellTable& table, const Lobe
                 const std::vector<float>& s_d, const SeparationOptions& options, Progress& progress,
                 SpectralFit& fit) {
   const std::size_t n = measured.axis().size();
-  Context<B> c{.table = table,
-               .lobes = lobes,
-               .block = WavelengthBlock<B>(table.fitted()),
-               .epsilon = options.epsilon,
-               .prior = options.diffraction_prior,
-               .whole = options.residual == SpectralResidual::kWhole};
+  Context<B> c{
+      .table = table,
+      .lobes = lobes,
+      .block = WavelengthBlock<B>(table.fitted()),
+      .epsilon = options.epsilon,
+      .prior = options.diffraction_prior,
+      .highest_sun = 2 * static_cast<float>(n),  // a lone lit wavelength has n; twice that for its fit
+      .whole = options.residual == SpectralResidual::kWhole};
   for (std::size_t first = 0; first < n; first += B) {
     c.first = first;
     c.count = static_cast<int>(std::min<std::size_t>(B, n - first));

@@ -19,6 +19,10 @@ namespace {
 // matte colour.)
 constexpr double kEmptyDiffuse = 1e-2, kEmptySpecular = 1e-3;
 
+// Weights of eq. 16, the paper's. Only their order matters to the optimum; with this one it is the Lambert
+// lobe, clamped to the mean, as the renderer's exactly Lambertian lobe needs it.
+constexpr double kEtaDiffuse = 0.9, kEtaSpecular = 0.8;
+
 struct Energies {
   double total = 0, specular = 0, missing = 0;
 };
@@ -42,7 +46,7 @@ Energies energies(const CellTable& table, double lambert) {
   return e;
 }
 
-double optimum_cost(const CellTable& table, const AnalyticFit& fit, const SeparationOptions& options) {
+double optimum_cost(const CellTable& table, const AnalyticFit& fit) {
   double cost = 0;
   const double lambert = fit.albedo_d / std::numbers::pi;
   for (int h = 0; h < table.grid.n_theta_h; ++h) {
@@ -54,16 +58,16 @@ double optimum_cost(const CellTable& table, const AnalyticFit& fit, const Separa
         const double mean = double(table.mean[i]);
         const double ggx =
             analytic_specular(fit, cos_h, cos_d, double(table.cos_i[i]), double(table.cos_o[i]));
-        const double x = split_cell(mean, lambert, ggx, options.eta_diffuse, options.eta_specular);
-        cost += double(table.weight[i]) * (options.eta_diffuse * std::abs(x - lambert) +
-                                           options.eta_specular * std::abs(mean - x - ggx));
+        const double x = split_cell(mean, lambert, ggx, kEtaDiffuse, kEtaSpecular);
+        cost += double(table.weight[i]) *
+                (kEtaDiffuse * std::abs(x - lambert) + kEtaSpecular * std::abs(mean - x - ggx));
       }
     }
   }
   return cost;
 }
 
-/// min(mean, Lambert) / Lambert: ρ_d of eq. 16 where eta_d > eta_s.
+/// min(mean, Lambert) / Lambert: ρ_d of eq. 16.
 std::vector<float> diffuse_table(const CellTable& table, double lambert) {
   const HalfDifferenceGrid& grid = table.grid;
   std::vector<float> shape(grid.size());
@@ -112,7 +116,7 @@ double lambert_excess(const CellTable& table, double albedo) {
 SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, bool matte,
                         const SeparationOptions& options) {
   SplitResult result;
-  result.cost = optimum_cost(table, fit, options);
+  result.cost = optimum_cost(table, fit);
   result.albedo_d = fit.albedo_d;
   Energies e = energies(table, result.albedo_d / std::numbers::pi);
   if (!matte && e.total > 0 && (e.total - e.specular) < kEmptyDiffuse * e.total) {

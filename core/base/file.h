@@ -13,12 +13,14 @@
 namespace spectrace {
 
 /// The whole file. Throws InputError where it cannot be opened or is larger than `max_bytes`.
-std::vector<std::byte> read_file(const std::filesystem::path& file, std::size_t max_bytes = std::size_t(4) << 30);
+std::vector<std::byte> read_file(const std::filesystem::path& file, std::size_t max_bytes = std::size_t(4)
+                                                                                            << 30);
 
 /// Runs `write` on a temporary name in the same folder (the same extension, so that image libraries choose
 /// the right format), then renames it over `file`. If `write` throws or the rename fails the temporary is
 /// removed, an old `file` is untouched, and the exception goes on; a failing system call throws InputError.
-void write_atomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+void write_atomically(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write);
 void write_file_atomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& file, std::string_view text);
 

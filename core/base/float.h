@@ -11,6 +11,7 @@ using Float = float;
 #endif
 
 /// The largest Float below 1, for random numbers in [0, 1).
-inline constexpr Float kOneMinusEpsilon = sizeof(Float) == 4 ? Float(0x1.fffffep-1) : Float(0x1.fffffffffffffp-1);
+inline constexpr Float kOneMinusEpsilon =
+    sizeof(Float) == 4 ? Float(0x1.fffffep-1) : Float(0x1.fffffffffffffp-1);
 
 }  // namespace spectrace

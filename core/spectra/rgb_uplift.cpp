@@ -50,6 +50,7 @@ SigmoidSpectrum uplift_reflectance_fast(const Rgb& rgb) {
 }
 
 RgbIlluminantSpectrum uplift_emission(const Rgb& rgb) { return scaled_uplift(rgb, uplift_reflectance); }
+SigmoidSpectrum uplift_factor(const Rgb& rgb) { return uplift_emission(rgb).sigmoid; }
 RgbIlluminantSpectrum uplift_emission_fast(const Rgb& rgb) {
   return scaled_uplift(rgb, uplift_reflectance_fast);
 }

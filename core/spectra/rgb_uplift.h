@@ -15,6 +15,8 @@ SigmoidSpectrum uplift_reflectance_fast(const Rgb& rgb);
 /// from its saturated ends.
 RgbIlluminantSpectrum uplift_emission(const Rgb& rgb);
 RgbIlluminantSpectrum uplift_emission_fast(const Rgb& rgb);
+/// What light is multiplied by: a scaled sigmoid without an illuminant; any channels >= 0, white is 1.
+SigmoidSpectrum uplift_factor(const Rgb& rgb);
 
 /// Three fixed smooth non-negative spectra r(λ), g(λ), b(λ) that sum to 1 at every wavelength and whose
 /// colours under D65 are the three sRGB primaries. rgb -> rgb[0] r + rgb[1] g + rgb[2] b is linear and

@@ -99,6 +99,7 @@ class Spectrum {
 enum class SpectrumRole {
   kReflectance,  ///< values in [0, 1]; RGB by a sigmoid
   kEmission,     ///< W·m⁻²·sr⁻¹·nm⁻¹, unbounded; RGB by a scaled sigmoid times D65
+  kFactor,       ///< >= 0, unbounded, no unit: what light is multiplied by; RGB by a scaled sigmoid alone
   kUnbounded,    ///< index of refraction, extinction: RGB is refused
 };
 

@@ -28,6 +28,7 @@ NumberRange value_range(SpectrumRole role, double scale) {
     case SpectrumRole::kReflectance:
       return {.min = 0, .max = scale > 1e-30 ? 1 / scale : kLargest};
     case SpectrumRole::kEmission:
+    case SpectrumRole::kFactor:
       return {.min = 0, .max = kLargest};
     case SpectrumRole::kUnbounded:
       break;
@@ -47,6 +48,7 @@ MaybeSpectrum parse_rgb(const JsonValue& json, SpectrumRole role, NumberRange ra
   if (v.empty()) return std::nullopt;
   const Rgb rgb{v[0], v[1], v[2]};
   if (role == SpectrumRole::kEmission) return uplift_emission(rgb);
+  if (role == SpectrumRole::kFactor) return uplift_factor(rgb);
   return uplift_reflectance(rgb);
 }
 

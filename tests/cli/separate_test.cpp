@@ -26,7 +26,46 @@ TEST_F(Separate, WritesAMaterialAndReportsOnIt) {
   EXPECT_TRUE(separated.says("step 1")) << separated.output;
   EXPECT_NE(read_text(folder_ / "m.report.json").find("step1"), std::string::npos);
   EXPECT_EQ(run({"inspect", "m.sep"}).exit_code, 0);
-  EXPECT_NO_THROW(read_separated_source(folder_ / "m.sep"));
+  EXPECT_EQ(richest_model(read_separated_source(folder_ / "m.sep")), SeparationModel::kDiffraction);
+}
+
+TEST_F(Separate, StoresWhatItIsAskedFor) {
+  write_measured("m.bsdf");
+  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "full.sep", "--full"}).exit_code, 0);
+  EXPECT_NO_THROW(read_separated(folder_ / "full.sep"));  // plain tables
+  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "sun.sep", "--model", "sun"}).exit_code, 0);
+  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "rest.sep", "--model", "residual", "--analytic"}).exit_code, 0);
+  EXPECT_EQ(richest_model(read_separated_source(folder_ / "sun.sep")), SeparationModel::kSun);
+  EXPECT_EQ(richest_model(read_separated_source(folder_ / "rest.sep")), SeparationModel::kResidual);
+  EXPECT_LT(std::filesystem::file_size(folder_ / "sun.sep"),
+            std::filesystem::file_size(folder_ / "rest.sep"));
+  const ProgramResult chosen =
+      run({"separate", "m.bsdf", "-o", "auto.sep", "--model", "auto", "--tolerance", "1"});
+  ASSERT_EQ(chosen.exit_code, 0) << chosen.errors;
+  EXPECT_TRUE(chosen.says("sun: error")) << chosen.output;  // anything is within a tolerance of 1
+  EXPECT_EQ(richest_model(read_separated_source(folder_ / "auto.sep")), SeparationModel::kSun);
+  for (const char* file : {"full.sep", "sun.sep", "rest.sep"})
+    EXPECT_EQ(run({"inspect", file}).exit_code, 0) << file;
+}
+
+TEST_F(Separate, AMaterialCannotBeRenderedByAModelItsFileLacks) {
+  write_measured("m.bsdf");
+  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "sun.sep", "--model", "sun"}).exit_code, 0);
+  const auto scene_with = [&](const std::string& model) {
+    write_text(folder_ / "s.json",
+               R"({"camera": {"type": "pinhole", "origin": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1]},
+      "film": {"width": 4, "height": 4}, "sampler": {"spp": 1},
+      "materials": [{"name": "m", "type": "separated", "file": "sun.sep")" +
+                   model + R"(}],
+      "shapes": [{"type": "sphere", "material": "m", "center": [0, 0, 0], "radius": 1}]})");
+  };
+  scene_with("");
+  EXPECT_EQ(run({"s.json", "-o", "s.exr"}).exit_code, 0);
+  scene_with(R"(, "model": "fresnel")");
+  expect_bad_input({"s.json", "-o", "t.exr"}, "sun.sep: has no tables for the model fresnel");
+  scene_with(R"(, "model": "analytic")");
+  expect_bad_input({"s.json", "-o", "t.exr"}, "sun.sep: has no analytic model");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "t.exr"));
 }
 
 TEST_F(Separate, AcquireRefusesWhatItCannotMeasure) {
@@ -48,6 +87,14 @@ TEST_F(Separate, SeparateSaysWhereAFitIsUnusable) {
   const ProgramResult result = run({"separate", "dark.bsdf", "-o", "dark.sep"});
   EXPECT_EQ(result.exit_code, 1) << result.output << result.errors;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "dark.sep"));
+  // The same verdict, the same exit code, where a scene is to be separated.
+  write_text(folder_ / "s.json",
+             R"({"camera": {"type": "pinhole", "origin": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1]},
+    "materials": [{"name": "m", "type": "measured", "file": "dark.bsdf"}],
+    "shapes": [{"type": "sphere", "material": "m", "center": [0, 0, 0], "radius": 1}]})");
+  const ProgramResult rendered = run({"s.json", "--separate", "sun", "--cache", "cache", "-o", "dark.exr"});
+  EXPECT_EQ(rendered.exit_code, 1) << rendered.output << rendered.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "dark.exr"));
 }
 
 }  // namespace

@@ -178,6 +178,25 @@ TEST(KnownRadiance, RouletteKeepsTheMean) {
   }
 }
 
+TEST(KnownRadiance, RouletteDoesNotTakeRefractionForLoss) {
+  // A white ball in a clear shell: nothing is lost, but inside the glass radiance counts 1/η² as much.
+  SceneDesc scene = empty_scene();
+  scene.materials = {lambert("white", Float(1)),
+                     {.name = "glass", .where = "", .kind = Dielectric{Spectrum::constant(Float(1.5))}}};
+  scene.shapes = {sphere({0, 0, 0}, 1, "glass"), sphere({0, 0, 0}, Float(0.9), "white")};
+  scene.lights = {sky(1)};
+  look_at_point(scene, {0, -5, 0}, {0, 0, 0});
+  const auto spread = [&](int roulette_depth) {
+    scene.integrator = {.max_depth = 200, .roulette_depth = roulette_depth};
+    const Estimate y = estimate_y(render_scene(scene, 256).image);
+    EXPECT_NEAR(y.mean, 1, kSigmas * y.standard_error + 1e-3);
+    return y.standard_error;
+  };
+  // A path's survival is at most 19 in 20, its throughput 1: some noise is roulette's due, an order of
+  // magnitude is not.
+  EXPECT_LT(spread(1), 4 * spread(200) + 0.01);
+}
+
 /// ∫ f cosθ dω of a grey rough metal by quadrature, independent of its sampling.
 double directional_albedo(const RoughConductor& metal, double theta_o) {
   const WavelengthDistribution wavelengths = WavelengthDistribution::uniform({});

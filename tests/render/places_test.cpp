@@ -85,6 +85,34 @@ TEST(Places, AnEnvironmentImageIsNotMirrored) {
   EXPECT_EQ(brightest(render_scene(scene, 64).image), std::pair(x, y));
 }
 
+TEST(Places, AWhiteFactorLeavesAnEnvironmentImageAsItIs) {
+  Image image(8, 4, {"R", "G", "B"});
+  std::fill(image.data.begin(), image.data.end(), 1.0F);
+  const auto folder = std::filesystem::path(testing::TempDir());
+  write_exr(folder / "places_white.exr", image, {});
+  const auto mean_of = [&](const std::string& radiance) {
+    const std::string text = R"({"camera": {"type": "pinhole", "origin": [0, -5, 0],
+      "target": [0, 0, 0], "up": [0, 0, 1]}, "film": {"width": 8, "height": 8}, "materials": [], "shapes": [],
+      "lights": [{"type": "environment", "file": "places_white.exr")" +
+                             radiance + "}]}";
+    const Image rendered = render_scene(parse_scene(text, folder / "places_white.json"), 256).image;
+    std::array<double, 3> mean{};
+    for (int y = 0; y < 8; ++y) {
+      for (int x = 0; x < 8; ++x) {
+        for (std::size_t c = 0; c < 3; ++c) mean[c] += double(rendered.at(x, y, c)) / 64;
+      }
+    }
+    return mean;
+  };
+  const auto alone = mean_of(""), white = mean_of(R"(, "radiance": {"rgb": [1, 1, 1]})"),
+             tinted = mean_of(R"(, "radiance": {"rgb": [0.25, 0.5, 1]})");
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(white[c], alone[c], 1e-4 * alone[c]);  // S(0) = 1/2 times 2
+    // The colour itself, as a reflectance of that colour would show it: the same wavelengths are drawn.
+    EXPECT_NEAR(tinted[c], (std::array{0.25, 0.5, 1.0})[c], 0.02);
+  }
+}
+
 TEST(Places, ABrightTexelLightsTheSideItShinesOn) {
   // The same texel as a lamp: shadows and pictures must agree on where it is.
   Image image(64, 32, {"R", "G", "B"});

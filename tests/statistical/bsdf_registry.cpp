@@ -9,7 +9,9 @@
 #include "core/base/progress.h"
 #include "materials/acquisition.h"
 #include "materials/half_difference.h"
+#include "separation/compact.h"
 #include "separation/separate.h"
+#include "separation/tabulate.h"
 #include "tests/support/test_data.h"
 
 namespace spectrace::test {
@@ -67,6 +69,8 @@ MeasuredTables acquire_for_test(const Material& material, int azimuths = 1, int 
 std::shared_ptr<const SeparatedTables> separate_for_test(const std::string& name) {
   SeparationOptions options;
   options.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
+  options.residual_rank = 3;
+  options.analytic = true;
   SilentProgress progress;
   return std::make_shared<const SeparatedTables>(
       separate(MeasuredBrdf(acquire_for_test(built_in(name))), options, progress).tables);
@@ -96,6 +100,18 @@ std::shared_ptr<const SeparatedTables> separated_tables(Float alpha) {
         t.rho_s.push_back(static_cast<float>(r.value_cos / pair.wi.z * (pair.wo.z + pair.wi.z)));
       }
     }
+  }
+  // A residual of either sign, up to more than the rest at some wavelengths: what it takes away is clamped.
+  t.residual = {.basis = {1, -1, 0.5F, 1.5F, 0.2F, 1, -1, 0.3F},
+                .ratio = std::vector<std::int8_t>(2 * t.grid.size()),
+                .step = 1.0F / 64,
+                .rank = 2,
+                .axis_size = 4};
+  for (std::size_t i = 0; i < t.residual.ratio.size(); ++i) {
+    const std::size_t group =
+        i / 2 / std::size_t(t.grid.n_phi_d);  // even over phi_d: continuous at the poles
+    t.residual.ratio[i] = static_cast<std::int8_t>(
+        100 * std::sin(0.1 * double(group % 30) + 0.01 * double(group / 30) + double(i % 2)));
   }
   t.source_name = "made for tests";
   return std::make_shared<const SeparatedTables>(std::move(t));
@@ -147,8 +163,8 @@ void add_analytic(std::vector<BsdfCase>& cases) {
 constexpr double kSeparatedStep = 1e-4;
 
 void add_separated(std::vector<BsdfCase>& cases) {
-  for (const SeparationModel model :
-       {SeparationModel::kSun, SeparationModel::kFresnel, SeparationModel::kDiffraction}) {
+  for (const SeparationModel model : {SeparationModel::kSun, SeparationModel::kFresnel,
+                                      SeparationModel::kDiffraction, SeparationModel::kResidual}) {
     for (const Float alpha : {Float(0.1), Float(0.4)}) {
       const std::string name = "Separated_" + name_of(model) + (alpha < Float(0.2) ? "_narrow" : "_wide");
       cases.push_back({.name = name,
@@ -163,6 +179,41 @@ void add_separated(std::vector<BsdfCase>& cases) {
                      .conserves_energy = false,
                      .specular_step = kSeparatedStep});
   }
+}
+
+/// The other forms that separation makes of a measurement.
+void add_forms_of_pearlescent(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](std::string name, std::function<std::optional<Material>()> make) {
+    cases.push_back({.name = std::move(name),
+                     .make = std::move(make),
+                     .is_reciprocal = true,
+                     .conserves_energy = false,
+                     .specular_step = kSeparatedStep});
+  };
+  for (const SeparationModel model : {SeparationModel::kSun, SeparationModel::kFresnel,
+                                      SeparationModel::kDiffraction, SeparationModel::kResidual}) {
+    add("Compact_" + name_of(model), [model] {
+      return SeparatedBrdf(std::make_shared<const CompactTables>(
+                               compact(*separate_for_test("pearlescent"), kDefaultQuality).tables),
+                           model);
+    });
+  }
+  add("AnalyticPerWavelength", [] {
+    const auto tables = separate_for_test("pearlescent");
+    return AnalyticBrdf(tables->axis, tables->analytic);
+  });
+  const auto table_x = [] {
+    SeparationOptions options;
+    options.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
+    return TabulatedBrdf(std::make_shared<const HalfDifferenceTable>(
+        tabulate(MeasuredBrdf(acquire_for_test(built_in("pearlescent"))), options)));
+  };
+  add("TableX", table_x);
+  cases.push_back({.name = "PairedMeasurement", .make = [] {
+                     return PairedBrdf(
+                         MeasuredBrdf(acquire_for_test(built_in("pearlescent"))),
+                         SeparatedBrdf(separate_for_test("pearlescent"), SeparationModel::kDiffraction));
+                   }});
 }
 
 void add_acquired(std::vector<BsdfCase>& cases) {
@@ -208,6 +259,7 @@ const std::vector<BsdfCase>& bsdf_cases() {
     std::vector<BsdfCase> c;
     add_analytic(c);
     add_separated(c);
+    add_forms_of_pearlescent(c);
     add_acquired(c);
     add_real(c);
     return c;

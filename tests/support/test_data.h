@@ -31,8 +31,8 @@ inline std::vector<std::filesystem::path> measured_files(const std::string& sub_
 }  // namespace spectrace::test
 
 /// First line of a test on shared data: `const auto file = data_folder() / "epfl_rgb/...";`
-#define SPECTRACE_SKIP_WITHOUT(file)                                     \
-  if (!std::filesystem::exists(file)) {                                  \
-    GTEST_SKIP() << "needs " << (file) << " (set SPECTRACE_DATA)";       \
-  }                                                                      \
+#define SPECTRACE_SKIP_WITHOUT(file)                               \
+  if (!std::filesystem::exists(file)) {                            \
+    GTEST_SKIP() << "needs " << (file) << " (set SPECTRACE_DATA)"; \
+  }                                                                \
   static_assert(true)

@@ -112,6 +112,25 @@ TEST(Fresnel, FilmOfNoThicknessIsTheBareMetal) {
   }
 }
 
+TEST(Fresnel, FilmsOverNothingAndMatchedFilmsStayWithinZeroAndOne) {
+  // Where both faces cancel or mirror, rounding has no reflectance to hide behind.
+  for (const double base : {1.0, 1.33, 1.8}) {
+    for (const double film : {1.0, 1.33, 1.8}) {
+      for (int d = 0; d <= 900; d += 15) {
+        for (int i = 0; i <= 2000; ++i) {
+          const Float c = Float(i) / 2000,
+                      r = fresnel_thin_film(c, 550, Float(film), Float(d), Float(base), 0);
+          ASSERT_TRUE(r >= 0 && r <= 1) << base << " " << film << " " << d << " " << c << ": " << r;
+        }
+      }
+    }
+  }
+  for (int i = 0; i <= 100000; ++i) {  // an index next to that of air
+    const Float c = Float(i) / 100000, r = fresnel_conductor(c, Float(1.0001), Float(1e-4));
+    ASSERT_TRUE(r >= 0 && r <= 1) << c << ": " << r;
+  }
+}
+
 TEST(Fresnel, QuarterWaveFilmOfTheMeanIndexReflectsNothing) {
   const double film = std::sqrt(1.5);
   EXPECT_NEAR(fresnel_thin_film(1, 550, Float(film), Float(550 / (4 * film)), Float(1.5), 0), 0, kRounding);

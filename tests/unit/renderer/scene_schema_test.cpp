@@ -123,7 +123,7 @@ bool is_beyond_schema(const std::string& problem) {
       "wavelengths must increase",
       "one for each wavelength",
       "at every wavelength",  // minimum of a spectrum
-      "must be at most 1",  // sum of two shares
+      "must be at most 1",    // sum of two shares
       "a triangle without positions",
       "in [0, 2], got",  // indices of three positions
   };

@@ -43,7 +43,7 @@ double cost(const Samples& samples, double s) {
 }
 
 float solve(const Samples& samples, float towards, double prior) {
-  LogRoot<1> root({towards}, 1, prior, kEpsilon);
+  LogRoot<1> root({towards}, 1, prior, kEpsilon, {16});
   while (!root.done()) {
     LogRootSums<1> sums;
     for (std::size_t j = 0; j < samples.b.size(); ++j) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "separation/residual_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "materials/acquisition.h"
+#include "materials/material.h"
+#include "separation/choose_model.h"
+#include "separation/separate.h"
+#include "separation/tabulate.h"
+
+namespace spectrace {
+namespace {
+
+MeasuredBrdf acquired(const std::string& name) {
+  const Material material = build_material(
+      load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials" / (name + ".json")));
+  AcquisitionOptions options;
+  options.lambda_nm = {400, 450, 500, 550, 600, 650, 700};
+  SilentProgress progress;
+  return MeasuredBrdf(acquire(material, options, progress));
+}
+
+SeparationOptions coarse(int residual_rank) {
+  SeparationOptions options;
+  options.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
+  options.residual_rank = residual_rank;
+  return options;
+}
+
+TEST(ResidualFit, BringsTheModelToTheTableItself) {
+  const MeasuredBrdf measured = acquired("pearlescent");
+  SilentProgress progress;
+  const SeparationResult result = separate(measured, coarse(6), progress);
+  EXPECT_GT(result.report.residual_explained, 0.99);
+  EXPECT_LT(result.report.residual_clamped_share, 1e-3);
+  const HalfDifferenceTable x = tabulate(measured, coarse(0));
+  const ResidualTable& residual = result.tables.residual;
+  const std::size_t n = x.axis.size();
+  double left = 0, of = 0;
+  for (int h = 1; h < x.grid.n_theta_h; ++h) {
+    for (int d = 1; d < x.grid.n_theta_d; ++d) {
+      for (int p = 0; p < x.grid.n_phi_d; ++p) {
+        const DirectionPair pair =
+            from_half_difference({x.grid.theta_h(h), x.grid.theta_d(d), x.grid.phi_d(p)});
+        if (!(pair.wo.z > 0.05 && pair.wi.z > 0.05)) continue;
+        const std::size_t cell = x.grid.index(h, d, p), group = cell / std::size_t(x.grid.n_phi_d);
+        const double diffuse = double(pair.wo.z + pair.wi.z) / 3.14159265358979;
+        double mean_albedo = 0;
+        for (float c : result.tables.c_d) mean_albedo += double(c) / double(n);
+        const double m = mean_albedo * diffuse + double(result.tables.rho_s[cell]);
+        for (std::size_t k = 0; k < n; ++k) {
+          const double model =
+              double(result.tables.c_d[k]) * diffuse +
+              double(result.tables.rho_s[cell]) * double(result.tables.s_diffraction[group * n + k]);
+          double ratio = 0;
+          for (std::size_t t = 0; t < residual.rank; ++t) {
+            ratio += double(residual.ratio[cell * residual.rank + t]) * double(residual.step) *
+                     double(residual.basis[t * n + k]);
+          }
+          const double truth = double(x.q[cell * n + k]);
+          left += std::pow((model + m * ratio - truth) / m, 2);
+          of += std::pow((model - truth) / m, 2);
+        }
+      }
+    }
+  }
+  EXPECT_LT(left, 0.02 * of);  // rounding to bytes, and the components left out
+}
+
+TEST(ChooseModel, TakesTheCheapestWithinTheTolerance) {
+  const MeasuredBrdf measured = acquired("pearlescent");
+  SilentProgress progress;
+  const auto tables = std::make_shared<const SeparatedTables>(separate(measured, coarse(4), progress).tables);
+  std::vector<double> errors;
+  for (int m = 0; m < 4; ++m)
+    errors.push_back(model_error(measured, tables, static_cast<SeparationModel>(m)));
+  EXPECT_LT(errors[1], errors[0]);  // a film's colour turns with theta_d
+  EXPECT_LT(errors[3], errors[2]);  // and the residual adds to the model it starts from
+  for (const double tolerance : errors) {
+    const auto cheapest =
+        std::find_if(errors.begin(), errors.end(), [&](double e) { return e <= tolerance; });
+    const ModelChoice choice = choose_model(measured, tables, tolerance);
+    EXPECT_EQ(choice.model, static_cast<SeparationModel>(cheapest - errors.begin()));
+    EXPECT_TRUE(choice.within_tolerance);
+    EXPECT_EQ(choice.errors.size(), std::size_t(cheapest - errors.begin()) + 1);
+  }
+  const ModelChoice none = choose_model(measured, tables, 0);
+  EXPECT_EQ(none.model, SeparationModel::kResidual);
+  EXPECT_FALSE(none.within_tolerance);
+}
+
+TEST(ModelError, IsZeroForTheMaterialItself) {
+  // A Lambert measured and separated as matte: only the measurement's own interpolation is left.
+  const MeasuredBrdf measured = acquired("matte");
+  SilentProgress progress;
+  const auto tables = std::make_shared<const SeparatedTables>(separate(measured, coarse(0), progress).tables);
+  EXPECT_LT(model_error(measured, tables, SeparationModel::kSun), 0.05);
+}
+
+}  // namespace
+}  // namespace spectrace
