@@ -120,6 +120,39 @@ TEST(Separate, RecoversTheSpecularLobeOfAKnownMaterial) {
   EXPECT_LT(difference, 0.06 * specular);  // 8.6 % of all this material's light is specular
 }
 
+TEST(Separate, ThePrintedEquationsRecoverWhatTheyDescribe) {
+  // Eqs. 11-15 themselves, measured: grey GGX with Schlick's factor over a coloured Lambert lobe. Here eqs. 7
+  // and 18 to 20 as printed have nothing to be wrong about.
+  const std::size_t n = kFewWavelengths.size();
+  std::vector<float> parameters(4 * n);
+  for (std::size_t k = 0; k < n; ++k) {
+    parameters[k] = static_cast<float>(kDiffuseColour[k]);
+    parameters[n + k] = 0.5F;
+    parameters[2 * n + k] = 0.2F;
+    parameters[3 * n + k] = 0.3F;
+  }
+  AcquisitionOptions acquisition;
+  acquisition.lambda_nm = kFewWavelengths;
+  acquisition.elevations = 24;
+  acquisition.table_size = 96;
+  SilentProgress progress;
+  const AnalyticBrdf truth(SpectralAxis::wavelengths(kFewWavelengths), parameters);
+  SeparationOptions options = small_grid();
+  options.colour = DiffuseColour::kPrinted;
+  options.residual = SpectralResidual::kPrinted;
+  options.analytic = true;
+  const SeparationResult result = separated(acquire(Material(truth), acquisition, progress), options);
+  expect_sound(result);
+  EXPECT_NEAR(result.report.fit.alpha, 0.3, 0.01);
+  for (std::size_t k = 0; k < n; ++k) {
+    EXPECT_NEAR(double(result.tables.c_d[k]) / kDiffuseColour[k], 1, 0.02) << "wavelength " << k;
+    EXPECT_NEAR(double(result.tables.s_sun[k]), 1, 0.03) << "wavelength " << k;  // the specular lobe is grey
+    // And the analytic model finds the parameters of each wavelength.
+    EXPECT_NEAR(double(result.tables.analytic[k]) / kDiffuseColour[k], 1, 0.02) << "wavelength " << k;
+    EXPECT_NEAR(double(result.tables.analytic[3 * n + k]), 0.3, 0.01) << "wavelength " << k;
+  }
+}
+
 TEST(Separate, ALoneLitWavelengthKeepsItsPeak) {
   // Hard case H7: of 48 wavelengths one reflects, so its colour is near 48 times the mean.
   std::string nm, f0;
