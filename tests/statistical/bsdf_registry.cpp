@@ -101,7 +101,7 @@ std::shared_ptr<const SeparatedTables> separated_tables(Float alpha) {
       }
     }
   }
-  // A residual of either sign, up to more than the rest at some wavelengths: what it takes away is clamped.
+  // A residual of either sign that leaves something at every wavelength: steps are told relative to the rest.
   t.residual = {.basis = {1, -1, 0.5F, 1.5F, 0.2F, 1, -1, 0.3F},
                 .ratio = std::vector<std::int8_t>(2 * t.grid.size()),
                 .step = 1.0F / 64,
