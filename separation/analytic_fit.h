@@ -5,24 +5,23 @@
 #include <array>
 
 #include "separation/cell_table.h"
+#include "separation/lobe_equations.h"
 #include "separation/separate.h"
 
 namespace spectrace {
 
-/// The parameters as the solver sees them: alpha_d, rho_0, F_0, ln a. The logarithm makes steps in roughness
-/// relative; it moves no optimum.
-inline constexpr int kFitParameters = 4;
+/// The parameters as the paper has them: alpha_d, rho_0, F_0, ln a.
 using FitVector = std::array<double, kFitParameters>;
 FitVector to_vector(const AnalyticFit& fit);
 AnalyticFit from_vector(const FitVector& x);
 
-/// ½ Σ r² over all fitted cells with r of eqs. 7-10, and what Gauss-Newton needs of it.
+/// ½ Σ r² over all of `cells` with r of eqs. 7-10, and what Gauss-Newton needs of it.
 struct FitEquations {
   double cost = 0;
   FitVector gradient{};                             ///< Jᵀr
   std::array<FitVector, kFitParameters> hessian{};  ///< JᵀJ
 };
-FitEquations fit_equations(const CellTable& table, double epsilon, const FitVector& x);
+FitEquations fit_equations(const LobeCells& cells, double epsilon, const FitVector& x);
 
 struct AnalyticSolution {
   AnalyticFit fit;
@@ -39,8 +38,12 @@ struct AnalyticSolution {
 /// began.
 AnalyticSolution fit_analytic(const CellTable& table, const SeparationOptions& options);
 
-/// The solution on all cells of `table` that lies in the valley of `start`.
-AnalyticFit refine_analytic(const CellTable& table, const SeparationOptions& options,
-                            const AnalyticFit& start);
+struct RefinedFit {
+  AnalyticFit fit;
+  double cost = 0;
+};
+/// The solution on all of `cells` that lies in the valley of `start`; on this thread.
+RefinedFit refine_analytic(const LobeCells& cells, const SeparationOptions& options,
+                           const AnalyticFit& start);
 
 }  // namespace spectrace

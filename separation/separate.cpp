@@ -139,8 +139,11 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   store(std::move(spectra), std::move(split), result);
   if (options.analytic) {
     progress.update("analytic model", 0, 1);
-    report.seconds_analytic =
-        seconds([&] { result.tables.analytic = fit_analytic_spectra(measured, table, achromatic, options); });
+    report.seconds_analytic = seconds([&] {
+      AnalyticSpectra spectra_fit = fit_analytic_spectra(measured, table, achromatic, options);
+      result.tables.analytic = std::move(spectra_fit.parameters);
+      report.rms_analytic = std::move(spectra_fit.rms);
+    });
   }
   if (options.residual_rank == 0) return;
 

@@ -88,6 +88,7 @@ struct SeparationReport {
   double lambert_cost = 0, specular_share = 0;
   /// [axis] root mean square of ln(ρ w + ε) less ln(model w + ε) over the measured cells (eqs. 18-20).
   std::vector<double> rms_sun, rms_fresnel, rms_diffraction;
+  std::vector<double> rms_analytic;   ///< the same of the analytic model, over the cells it was fitted to
   double residual_explained = 0;      ///< share of the squared residual that the terms explain, 0 where none
   double residual_clamped_share = 0;  ///< of their ratios, beyond what a byte holds
   double seconds_residual = 0, seconds_analytic = 0;

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
+#include <vector>
 
+#include "separation/log_block.h"
 #include "separation/log_root.h"
 #include "separation/parallel.h"
+#include "separation/spectral_sums.h"
 #include "separation/two_lobe_fit.h"
-#include "separation/wavelength_block.h"
 
 namespace spectrace {
 namespace {
@@ -24,202 +25,131 @@ constexpr double kFresnelPrior = 1;
 // mean and darker than one channel); interpolation would multiply such an s with a neighbour's rho_s.
 constexpr float kHighestOverSun = 16;
 
-template <int B>
-std::array<float, std::size_t(B)> filled(float value) {
-  std::array<float, B> out{};
-  out.fill(value);
+// As in step 1: one cell in seven leads to the neighbourhood of a solution, which all cells then decide.
+constexpr std::size_t kScoutStride = 7;
+
+// Wavelengths whose X is held at once: 256 MB on the paper's grid.
+constexpr std::size_t kStripsPerBlock = 4;
+
+Strip filled(float value) {
+  Strip strip;
+  strip.fill(value);
+  return strip;
+}
+
+Strip highest_of(const Strip& s_sun) {
+  Strip out;
+  for (std::size_t k = 0; k < kStrip; ++k) out[k] = kHighestOverSun * std::max(s_sun[k], 1.0F);
   return out;
 }
 
-template <int B>
-std::array<float, std::size_t(B)> highest_of(const std::array<float, std::size_t(B)>& s_sun) {
-  std::array<float, B> out{};
-  for (int k = 0; k < B; ++k) out[k] = kHighestOverSun * std::max(s_sun[k], 1.0F);
-  return out;
-}
-
-/// Everything the fits of one block share.
-template <int B>
-struct Context {
-  const CellTable& table;
-  const LobeWeights& lobes;
-  WavelengthBlock<B> block;
-  double epsilon = 0, prior = 0;
-  float highest_sun = 0;  ///< no s_sun is larger: its mean over the axis is 1
-  bool whole = true;      ///< SpectralResidual::kWhole
+/// One strip of the axis, and everything its fits share.
+struct StripFit {
+  StripProblem whole;     ///< of eq. 18
+  StripProblem compared;  ///< of eqs. 19 and 20: SpectralResidual
   std::size_t first = 0;  ///< of the axis
-  int count = 0;          ///< wavelengths of this block that exist
-  std::array<float, B> s_d{}, s_sun{};
+  int count = 0;          ///< wavelengths that exist
+  Strip s_sun{};
 };
 
-/// Adds the samples of one (theta_h, theta_d) to the sums of a root search at `s`.
-template <int B, bool kWhole>
-void add_samples(const Context<B>& c, std::size_t group, const std::array<float, B>& s,
-                 LogRootSums<B>& sums) {
-  const auto epsilon = static_cast<float>(c.epsilon);
-  std::array<float, B> gradient{}, information{};
-  for (std::size_t i = c.table.begin[group]; i < c.table.begin[group + 1]; ++i) {
-    const float a = c.lobes.diffuse[i], b = c.lobes.specular[i];
-    const float* x = c.block.row(i);
-    for (int k = 0; k < B; ++k) {
-      const float diffuse = c.s_d[k] * a, specular = s[k] * b;
-      // As printed the argument of eqs. 19 and 20 may be negative: clamped.
-      const float data = (kWhole ? x[k] : std::max(x[k] - diffuse, 0.0F)) + epsilon;
-      const float inverse = 1 / ((kWhole ? diffuse + specular : specular) + epsilon);
-      const float r = fast_log(data * inverse), u = specular * inverse;
-      gradient[k] += r * u;
-      information[k] += u * u;
-    }
-  }
-  for (int k = 0; k < B; ++k) {
-    sums.gradient[k] += double(gradient[k]);
-    sums.information[k] += double(information[k]);
-  }
-}
-
-template <int B>
-void add_samples(const Context<B>& c, std::size_t group, const std::array<float, B>& s,
-                 LogRootSums<B>& sums) {
-  c.whole ? add_samples<B, true>(c, group, s, sums) : add_samples<B, false>(c, group, s, sums);
-}
+struct Angles {
+  std::size_t n_h, n_d;
+  explicit Angles(const CellTable& table)
+      : n_h(std::size_t(table.grid.n_theta_h)), n_d(std::size_t(table.grid.n_theta_d)) {}
+};
 
 /// eq. 18 where s_d is known already: one unknown per wavelength.
-template <int B>
-void fit_sun(Context<B>& c) {
-  const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
-  std::array<float, B> start{};
-  start.fill(1);
-  LogRoot<B> root(start, c.count, 0, c.epsilon, filled<B>(c.highest_sun));
-  std::vector<LogRootSums<B>> slices(n_h);
-  while (!root.done()) {
-    parallel_chunks(n_h, [&](std::size_t h) {
-      slices[h] = {};
-      for (std::size_t d = 0; d < n_d; ++d) add_samples<B>(c, h * n_d + d, root.at(), slices[h]);
-    });
-    LogRootSums<B> sums;
-    for (const LogRootSums<B>& slice : slices) {
-      for (int k = 0; k < B; ++k) {
-        sums.gradient[k] += slice.gradient[k];
-        sums.information[k] += slice.information[k];
-      }
+void fit_sun(StripFit& strip, float highest) {
+  const CellTable& table = strip.whole.table;
+  const Angles angles(table);
+  LogRoot root(filled(1), strip.count, 0, strip.whole.epsilon, filled(highest));
+  std::vector<LogRootSums<double>> slices(angles.n_h);
+  for (const std::size_t stride : {kScoutStride, std::size_t(1)}) {
+    root.start_again(strip.count);
+    while (!root.done()) {
+      parallel_chunks(angles.n_h, [&](std::size_t h) {
+        slices[h] = {};
+        for (std::size_t group = h * angles.n_d; group < (h + 1) * angles.n_d; ++group) {
+          slices[h].add(root_sums(strip.whole, cells_of_group(table, group, stride), root.at()));
+        }
+      });
+      LogRootSums<double> sums;
+      for (const LogRootSums<double>& slice : slices) sums.add(slice);
+      root.step(sums);
     }
-    root.step(sums);
   }
-  c.s_sun = root.result();
+  strip.s_sun = root.result();
 }
 
 /// eq. 19: one unknown per (theta_d, wavelength), drawn towards s_sun.
-template <int B>
-void fit_fresnel(const Context<B>& c, SpectralFit& fit, std::size_t axis_size) {
-  const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
-  parallel_chunks(n_d, [&](std::size_t d) {
-    LogRoot<B> root(c.s_sun, c.count, kFresnelPrior, c.epsilon, highest_of<B>(c.s_sun));
-    while (!root.done()) {
-      LogRootSums<B> sums;
-      for (std::size_t h = 0; h < n_h; ++h) add_samples<B>(c, h * n_d + d, root.at(), sums);
-      root.step(sums);
-    }
-    std::copy_n(root.result().begin(), c.count, &fit.s_fresnel[d * axis_size + c.first]);
-  });
-}
-
-/// eq. 20: one unknown per (theta_h, theta_d, wavelength), drawn towards s_fresnel.
-template <int B>
-void fit_diffraction(const Context<B>& c, SpectralFit& fit, std::size_t axis_size) {
-  const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
-  parallel_chunks(n_h, [&](std::size_t h) {
-    for (std::size_t d = 0; d < n_d; ++d) {
-      std::array<float, B> s_fresnel{};
-      std::copy_n(&fit.s_fresnel[d * axis_size + c.first], c.count, s_fresnel.begin());
-      LogRoot<B> root(s_fresnel, c.count, c.prior, c.epsilon, highest_of<B>(c.s_sun));
+void fit_fresnel(const StripFit& strip, SpectralFit& fit) {
+  const std::size_t axis_size = fit.s_d.size();
+  const CellTable& table = strip.compared.table;
+  const Angles angles(table);
+  parallel_chunks(angles.n_d, [&](std::size_t d) {
+    LogRoot root(strip.s_sun, strip.count, kFresnelPrior, strip.compared.epsilon, highest_of(strip.s_sun));
+    for (const std::size_t stride : {kScoutStride, std::size_t(1)}) {
+      root.start_again(strip.count);
       while (!root.done()) {
-        LogRootSums<B> sums;
-        add_samples<B>(c, h * n_d + d, root.at(), sums);
+        LogRootSums<double> sums;
+        for (std::size_t h = 0; h < angles.n_h; ++h) {
+          sums.add(root_sums(strip.compared, cells_of_group(table, h * angles.n_d + d, stride), root.at()));
+        }
         root.step(sums);
       }
-      std::copy_n(root.result().begin(), c.count, &fit.s_diffraction[(h * n_d + d) * axis_size + c.first]);
     }
+    std::copy_n(root.result().begin(), strip.count, &fit.s_fresnel[d * axis_size + strip.first]);
   });
 }
 
-template <int B>
-using Squares = std::array<std::array<double, B>, 3>;
+using Squares = std::array<std::array<double, kStrip>, 3>;
 
-/// Σ r² of the three models over one (theta_h, theta_d).
-template <int B>
-void add_squares(const Context<B>& c, std::size_t group, const std::array<std::array<float, B>, 3>& s,
-                 Squares<B>& squares) {
-  const auto epsilon = static_cast<float>(c.epsilon);
-  std::array<std::array<float, B>, 3> sums{};
-  for (std::size_t i = c.table.begin[group]; i < c.table.begin[group + 1]; ++i) {
-    const float a = c.lobes.diffuse[i], b = c.lobes.specular[i];
-    const float* x = c.block.row(i);
-    for (std::size_t m = 0; m < 3; ++m) {
-      for (int k = 0; k < B; ++k) {
-        const float r = fast_log((x[k] + epsilon) / (c.s_d[k] * a + s[m][k] * b + epsilon));
-        sums[m][k] += r * r;
+/// eq. 20: one unknown per (theta_h, theta_d, wavelength), drawn towards s_fresnel; and what the three models
+/// leave, while a cell's samples are in cache.
+void fit_diffraction(const StripFit& strip, float prior, SpectralFit& fit) {
+  const std::size_t axis_size = fit.s_d.size();
+  const CellTable& table = strip.compared.table;
+  const Angles angles(table);
+  const Strip highest = highest_of(strip.s_sun);
+  std::vector<Squares> slices(angles.n_h);
+  parallel_chunks(angles.n_h, [&](std::size_t h) {
+    std::array<Strip, 3> s{strip.s_sun};
+    for (std::size_t d = 0; d < angles.n_d; ++d) {
+      const std::size_t group = h * angles.n_d + d;
+      const CellRange cells = cells_of_group(table, group, 1);
+      std::copy_n(&fit.s_fresnel[d * axis_size + strip.first], strip.count, s[1].begin());
+      s[2] = solve_group(strip.compared, cells, s[1], strip.count, prior, highest);
+      std::copy_n(s[2].begin(), strip.count, &fit.s_diffraction[group * axis_size + strip.first]);
+      const std::array<Strip, 3> sums = squares(strip.whole, cells, s);
+      for (std::size_t m = 0; m < 3; ++m) {
+        for (std::size_t k = 0; k < kStrip; ++k) slices[h][m][k] += double(sums[m][k]);
       }
-    }
-  }
-  for (std::size_t m = 0; m < 3; ++m) {
-    for (int k = 0; k < B; ++k) squares[m][k] += double(sums[m][k]);
-  }
-}
-
-template <int B>
-void measure_residuals(const Context<B>& c, SpectralFit& fit, std::size_t axis_size) {
-  const auto n_h = std::size_t(c.table.grid.n_theta_h), n_d = std::size_t(c.table.grid.n_theta_d);
-  std::vector<Squares<B>> slices(n_h);
-  parallel_chunks(n_h, [&](std::size_t h) {
-    std::array<std::array<float, B>, 3> s{c.s_sun};
-    for (std::size_t d = 0; d < n_d; ++d) {
-      std::copy_n(&fit.s_fresnel[d * axis_size + c.first], c.count, s[1].begin());
-      std::copy_n(&fit.s_diffraction[(h * n_d + d) * axis_size + c.first], c.count, s[2].begin());
-      add_squares<B>(c, h * n_d + d, s, slices[h]);
     }
   });
   const std::array<std::vector<double>*, 3> rms{&fit.rms_sun, &fit.rms_fresnel, &fit.rms_diffraction};
   for (std::size_t m = 0; m < 3; ++m) {
-    for (int k = 0; k < c.count; ++k) {
+    for (std::size_t k = 0; k < std::size_t(strip.count); ++k) {
       double sum = 0;
-      for (const Squares<B>& slice : slices) sum += slice[m][k];
-      (*rms[m])[c.first + std::size_t(k)] = std::sqrt(sum / double(c.table.fitted()));
+      for (const Squares& slice : slices) sum += slice[m][k];
+      (*rms[m])[strip.first + k] = std::sqrt(sum / double(table.fitted()));
     }
   }
 }
 
-template <int B>
-void fit_blocks(const MeasuredBrdf& measured, const CellTable& table, const LobeWeights& lobes,
-                const std::vector<float>& s_d, const SeparationOptions& options, Progress& progress,
-                SpectralFit& fit) {
-  const std::size_t n = measured.axis().size();
-  Context<B> c{
-      .table = table,
-      .lobes = lobes,
-      .block = WavelengthBlock<B>(table.fitted()),
-      .epsilon = options.epsilon,
-      .prior = options.diffraction_prior,
-      .highest_sun = 2 * static_cast<float>(n),  // a lone lit wavelength has n; twice that for its fit
-      .whole = options.residual == SpectralResidual::kWhole};
-  for (std::size_t first = 0; first < n; first += B) {
-    c.first = first;
-    c.count = static_cast<int>(std::min<std::size_t>(B, n - first));
-    c.block.fill(measured, table, first, c.count);
-    if (s_d.empty()) {
-      const TwoLobes<B> two = fit_two_lobes<B>(table, lobes, c.block, c.count, options.epsilon);
-      c.s_d = two.s_d;
-      c.s_sun = two.s_s;
-    } else {
-      std::copy_n(&s_d[first], c.count, c.s_d.begin());
-      fit_sun(c);
-    }
-    std::copy_n(c.s_d.begin(), c.count, &fit.s_d[first]);
-    std::copy_n(c.s_sun.begin(), c.count, &fit.s_sun[first]);
-    fit_fresnel(c, fit, n);
-    fit_diffraction(c, fit, n);
-    measure_residuals(c, fit, n);
-    progress.update("spectra", double(std::min(first + B, n)), double(n));
+/// s_d and s_sun.
+void fit_eq_18(StripFit& strip, const std::vector<float>& s_d, SpectralFit& fit) {
+  if (s_d.empty()) {
+    const TwoLobes two = fit_two_lobes(strip.whole, strip.count);
+    strip.whole.s_d = two.s_d;
+    strip.s_sun = two.s_s;
+  } else {
+    std::copy_n(&s_d[strip.first], strip.count, strip.whole.s_d.begin());
+    // A lone lit wavelength has as many as the axis; twice that for its fit.
+    fit_sun(strip, 2 * static_cast<float>(fit.s_d.size()));
   }
+  strip.compared.s_d = strip.whole.s_d;
+  std::copy_n(strip.whole.s_d.begin(), strip.count, &fit.s_d[strip.first]);
+  std::copy_n(strip.s_sun.begin(), strip.count, &fit.s_sun[strip.first]);
 }
 
 LobeWeights lobe_weights(const CellTable& table, const SplitResult& split) {
@@ -235,6 +165,54 @@ LobeWeights lobe_weights(const CellTable& table, const SplitResult& split) {
   return lobes;
 }
 
+/// Some strips of the axis: all models, then their residuals.
+class BlockFit {
+ public:
+  BlockFit(const CellTable& table, const LobeWeights& lobes, const std::vector<float>& s_d,
+           const SeparationOptions& options, SpectralFit& fit)
+      : table_(table), lobes_(lobes), s_d_(s_d), options_(options), fit_(fit) {}
+
+  void run(const PaddedSpectra& spectra, std::size_t first_strip, std::size_t strips, LogBlock& data,
+           LogBlock& remainder) const {
+    const std::size_t n = fit_.s_d.size();
+    data.fill(spectra, table_, first_strip, strips, options_.epsilon);
+    std::vector<StripFit> fits;
+    for (std::size_t i = 0; i < strips; ++i) {
+      const std::size_t first = (first_strip + i) * kStrip;
+      const StripProblem problem{.table = table_,
+                                 .diffuse = lobes_.diffuse.data(),
+                                 .specular = lobes_.specular.data(),
+                                 .log_data = data.strip(i),
+                                 .epsilon = static_cast<float>(options_.epsilon)};
+      fits.push_back({.whole = problem,
+                      .compared = problem,
+                      .first = first,
+                      .count = static_cast<int>(std::min(kStrip, n - first))});
+      fit_eq_18(fits.back(), s_d_, fit_);
+    }
+    if (options_.residual == SpectralResidual::kPrinted) {
+      std::vector<Strip> s_d;
+      for (const StripFit& strip : fits) s_d.push_back(strip.whole.s_d);
+      remainder.fill_remainder(spectra, table_, first_strip, s_d, lobes_, options_.epsilon);
+      for (std::size_t i = 0; i < strips; ++i) {
+        fits[i].compared.s_d = {};
+        fits[i].compared.log_data = remainder.strip(i);
+      }
+    }
+    for (const StripFit& strip : fits) {
+      fit_fresnel(strip, fit_);
+      fit_diffraction(strip, static_cast<float>(options_.diffraction_prior), fit_);
+    }
+  }
+
+ private:
+  const CellTable& table_;
+  const LobeWeights& lobes_;
+  const std::vector<float>& s_d_;
+  const SeparationOptions& options_;
+  SpectralFit& fit_;
+};
+
 }  // namespace
 
 SpectralFit fit_spectra(const MeasuredBrdf& measured, const CellTable& table, const SplitResult& split,
@@ -249,10 +227,16 @@ SpectralFit fit_spectra(const MeasuredBrdf& measured, const CellTable& table, co
                   .rms_diffraction = std::vector<double>(n)};
   if (table.fitted() == 0) return fit;
   const LobeWeights lobes = lobe_weights(table, split);
-  if (n <= 4) {
-    fit_blocks<4>(measured, table, lobes, s_d, options, progress, fit);
-  } else {
-    fit_blocks<16>(measured, table, lobes, s_d, options, progress, fit);
+  const PaddedSpectra spectra(measured);
+  const std::size_t blocks = (spectra.strips() + kStripsPerBlock - 1) / kStripsPerBlock;
+  const std::size_t most = (spectra.strips() + blocks - 1) / blocks;
+  LogBlock data(table.fitted(), most);
+  LogBlock remainder(table.fitted(), options.residual == SpectralResidual::kPrinted ? most : 0);
+  const BlockFit block(table, lobes, s_d, options, fit);
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::size_t first = i * spectra.strips() / blocks, end = (i + 1) * spectra.strips() / blocks;
+    block.run(spectra, first, end - first, data, remainder);
+    progress.update("spectra", double(std::min(end * kStrip, n)), double(n));
   }
   return fit;
 }

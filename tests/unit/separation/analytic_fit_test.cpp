@@ -49,20 +49,21 @@ TEST(AnalyticFit, GgxIsWhatThePaperPrints) {
 
 TEST(AnalyticFit, GradientAgreesWithDifferences) {
   const SeparationOptions options = small_grid();
-  const CellTable table = material({.albedo_d = 0.4, .rho_0 = 0.6, .f_0 = 0.2, .alpha = 0.2}, options);
+  const LobeCells cells = lobe_cells(
+      material({.albedo_d = 0.4, .rho_0 = 0.6, .f_0 = 0.2, .alpha = 0.2}, options), options.epsilon, 1);
   constexpr double kStep = 1e-5;
   // Central differences of an O(1) second derivative: step² times the third derivative, plus rounding / step.
   constexpr double kTolerance = 1e-6;
   for (const AnalyticFit& at : {AnalyticFit{.albedo_d = 0.3, .rho_0 = 0.9, .f_0 = 0.4, .alpha = 0.35},
                                 AnalyticFit{.albedo_d = 0.6, .rho_0 = 0.2, .f_0 = 0.05, .alpha = 0.05}}) {
     const FitVector x = to_vector(at);
-    const FitEquations equations = fit_equations(table, options.epsilon, x);
+    const FitEquations equations = fit_equations(cells, options.epsilon, x);
     for (std::size_t i = 0; i < x.size(); ++i) {
       FitVector low = x, high = x;
       low[i] -= kStep;
       high[i] += kStep;
-      const double difference = (fit_equations(table, options.epsilon, high).cost -
-                                 fit_equations(table, options.epsilon, low).cost) /
+      const double difference = (fit_equations(cells, options.epsilon, high).cost -
+                                 fit_equations(cells, options.epsilon, low).cost) /
                                 (2 * kStep);
       EXPECT_NEAR(equations.gradient[i] / difference, 1, kTolerance) << "parameter " << i;
     }

@@ -42,13 +42,19 @@ double cost(const Samples& samples, double s) {
   return sum;
 }
 
-float solve(const Samples& samples, float towards, double prior) {
-  LogRoot<1> root({towards}, 1, prior, kEpsilon, {16});
+float solve(const Samples& samples, float towards, float prior) {
+  Strip start{}, highest{};
+  start[0] = towards;
+  highest.fill(16);
+  LogRoot root(start, 1, prior, float(kEpsilon), highest);
   while (!root.done()) {
-    LogRootSums<1> sums;
+    LogRootSums<double> sums;
     for (std::size_t j = 0; j < samples.b.size(); ++j) {
       const double specular = double(root.at()[0]) * samples.b[j], u = specular / (specular + kEpsilon);
-      sums.gradient[0] += std::log((samples.y[j] + kEpsilon) / (specular + kEpsilon)) * u;
+      const double r = std::log((samples.y[j] + kEpsilon) / (specular + kEpsilon));
+      sums.gradient[0] += r * u;
+      sums.slope[0] += r * u * (1 - u) - u * u;
+      sums.curvature[0] += u * (1 - u) * (r * (1 - 2 * u) - 3 * u);
       sums.information[0] += u * u;
     }
     root.step(sums);
