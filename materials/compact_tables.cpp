@@ -18,6 +18,29 @@ namespace spectrace {
 namespace {
 
 constexpr std::string_view kFormat = "spectrace compact separated material 1";
+
+constexpr std::array<std::string_view, 22> kFields{"format",
+                                                   "nodes",
+                                                   "theta_h_spacing",
+                                                   "wavelengths",
+                                                   "c_d",
+                                                   "s_sun",
+                                                   "rho_s_octaves_per_code",
+                                                   "rho_s_max",
+                                                   "rho_s_codes",
+                                                   "diffuse_shape",
+                                                   "spectral_basis",
+                                                   "s_fresnel_scale",
+                                                   "s_fresnel_codes",
+                                                   "s_diffraction_scale",
+                                                   "s_diffraction_codes",
+                                                   "residual_basis",
+                                                   "residual_step",
+                                                   "residual_ratio",
+                                                   "analytic",
+                                                   "source_name",
+                                                   "source_sha256",
+                                                   "report"};
 constexpr std::array<std::size_t, 1> kOne{1};
 constexpr float kMaxOctaves = 24;  // of LogCodes: the precision of float's own mantissa
 constexpr float kShort = 32767;    // largest code of a signed weight
@@ -142,6 +165,7 @@ CompactTables compact_from_tensors(const TensorFile& tensors) {
   tables.axis = reader.axis();
   tables.grid = read_nodes(reader);
   const std::size_t n = tables.axis.size();
+  reader.refuse_unknown(kFields);
   tables.c_d = reader.non_negative("c_d", std::array{n});
   tables.s_sun = reader.non_negative("s_sun", std::array{n});
 

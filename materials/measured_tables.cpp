@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 
 namespace spectrace {
 
@@ -25,6 +26,9 @@ constexpr double kPhiTolerance = 1e-3;
 
 constexpr std::array kFloatTypes{TensorType::kF32, TensorType::kF64, TensorType::kF16};
 constexpr std::array kByteTypes{TensorType::kU8};
+
+// What a file of the database may lack. Nothing is read from `version`.
+constexpr std::array<std::string_view, 2> kOptionalFields{"version", "valid"};
 
 /// One field: where its problems are reported.
 struct Field {
@@ -95,7 +99,9 @@ std::pair<std::size_t, float> clamp_negative(std::vector<float>& values) {
 
 std::string read_description(const Field& field) {
   std::string text;
-  for (const std::byte b : field.tensor.bytes) {
+  std::span<const std::byte> bytes = field.tensor.bytes;
+  while (!bytes.empty() && bytes.back() == std::byte(0)) bytes = bytes.first(bytes.size() - 1);
+  for (const std::byte b : bytes) {
     const auto c = static_cast<unsigned char>(b);
     // It ends up in one-line messages and in JSON: neither takes control characters or broken UTF-8.
     text += c >= 0x20 && c < 0x7f ? static_cast<char>(c) : c < 0x7f ? ' ' : '?';
@@ -221,6 +227,19 @@ void read_valid(const TensorFile& file, MeasuredTables& out) {
   }
 }
 
+/// An optional field under a damaged name would be missed unnoticed: a name like that of an optional field
+/// that is not there is an error. Other unknown fields are the writer's own business.
+void refuse_misspelt_fields(const TensorFile& file) {
+  std::vector<std::string> absent;
+  for (const std::string_view name : kOptionalFields) {
+    if (file.find(name) == nullptr) absent.emplace_back(name);
+  }
+  for (const Tensor& tensor : file.tensors()) {
+    const std::string hint = suggestion(tensor.name, absent);
+    if (!hint.empty()) Field{file, tensor}.fail("is no field of a measurement" + hint);
+  }
+}
+
 Tensor packed_bits(std::string name, const std::vector<unsigned char>& flags) {
   Tensor tensor{
       .name = std::move(name), .type = TensorType::kU8, .shape = {(flags.size() + 7) / 8}, .bytes = {}};
@@ -253,6 +272,7 @@ float MeasuredTables::last_measured_theta_i() const {
 }
 
 MeasuredTables measured_from_tensors(const TensorFile& tensors) {
+  refuse_misspelt_fields(tensors);
   MeasuredTables out;
   out.file_name = tensors.file_name();
   out.description = read_description(require(tensors, "description", kByteTypes, {0}));

@@ -19,6 +19,11 @@ namespace {
 
 constexpr std::string_view kFormat = "spectrace separated material 1";
 
+constexpr std::array<std::string_view, 16> kFields{
+    "format",         "theta_h_spacing", "wavelengths",   "c_d",      "diffuse_shape",  "rho_s",
+    "s_sun",          "s_fresnel",       "s_diffraction", "analytic", "residual_basis", "residual_step",
+    "residual_ratio", "source_name",     "source_sha256", "report"};
+
 HalfDifferenceGrid read_grid(const TensorFile& tensors, const TensorReader& reader) {
   HalfDifferenceGrid grid;
   grid.quadratic_theta_h = reader.is_quadratic();
@@ -68,6 +73,7 @@ SeparatedTables separated_from_tensors(const TensorFile& tensors) {
   tables.axis = reader.axis();
   tables.grid = read_grid(tensors, reader);
   const std::size_t n = tables.axis.size();
+  reader.refuse_unknown(kFields);
   const auto h = static_cast<std::size_t>(tables.grid.n_theta_h),
              d = static_cast<std::size_t>(tables.grid.n_theta_d),
              p = static_cast<std::size_t>(tables.grid.n_phi_d);

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -165,126 +163,89 @@ Tensor read_entry(HeaderCursor& in, std::span<const std::byte> bytes) {
   return tensor;
 }
 
-/// Without this a small file could ask for its bytes many times over.
-void refuse_overlaps(const std::vector<Tensor>& tensors, std::size_t header_size,
-                     const std::string& file_name) {
-  std::vector<const Tensor*> by_offset;
+/// From a damaged offset, shape or number of fields follows that some field's data belong to none: padding
+/// is 0, as in the database's own files.
+void refuse_stray_bytes(std::span<const std::byte> bytes, std::uint64_t first, std::uint64_t end,
+                        const std::string& file_name) {
+  const auto gap = bytes.subspan(first, end - first);
+  const auto stray = std::find_if(gap.begin(), gap.end(), [](std::byte b) { return b != std::byte(0); });
+  if (stray == gap.end()) return;
+  throw InputError(file_name, at_byte(first + std::uint64_t(stray - gap.begin())),
+                   "belongs to no field, and is no padding (0)");
+}
+
+/// `alignment` is a power of two.
+constexpr std::uint64_t aligned(std::uint64_t position, std::uint64_t alignment) {
+  return (position + alignment - 1) / alignment * alignment;
+}
+
+/// Tensors that hold anything, in the order of their data.
+std::vector<const Tensor*> by_offset(const std::vector<Tensor>& tensors) {
+  std::vector<const Tensor*> sorted;
   for (const Tensor& tensor : tensors) {
-    if (tensor.count() > 0) by_offset.push_back(&tensor);
+    if (tensor.count() > 0) sorted.push_back(&tensor);
   }
-  std::sort(by_offset.begin(), by_offset.end(),
+  std::sort(sorted.begin(), sorted.end(),
             [](const Tensor* a, const Tensor* b) { return a->offset < b->offset; });
+  return sorted;
+}
+
+std::uint64_t end_of(const Tensor& tensor) { return tensor.offset + tensor.count() * size_of(tensor.type); }
+
+/// Writers put one field behind another, each at the next multiple of some power of two: which one is theirs
+/// to choose, but a field that lies elsewhere than its neighbours say has a damaged offset, even where only
+/// zeros moved.
+void refuse_shifted(const std::vector<Tensor>& tensors, const std::string& file_name) {
+  constexpr std::uint64_t kMostAligned = 4096;  // a page
+  const std::vector<const Tensor*> sorted = by_offset(tensors);
+  const Tensor* shifted = nullptr;
+  std::size_t fewest = sorted.size();
+  for (std::uint64_t alignment = kMostAligned; alignment >= 1 && fewest > 0; alignment /= 2) {
+    std::size_t count = 0;
+    const Tensor* first = nullptr;
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+      if (sorted[i]->offset == aligned(end_of(*sorted[i - 1]), alignment)) continue;
+      if (count++ == 0) first = sorted[i];
+    }
+    if (count < fewest) fewest = count, shifted = first;
+  }
+  if (shifted == nullptr) return;
+  throw InputError(file_name, at_byte(shifted->offset, shifted->name),
+                   "its data do not lie where those of the other fields end");
+}
+
+/// Without this a small file could ask for its bytes many times over, and damage to the header would read the
+/// bytes of one field as another's.
+void refuse_overlaps_and_strays(const std::vector<Tensor>& tensors, std::span<const std::byte> bytes,
+                                std::size_t header_size, const std::string& file_name) {
   std::uint64_t end = header_size;
   std::string previous = "header";
-  for (const Tensor* tensor : by_offset) {
+  for (const Tensor* tensor : by_offset(tensors)) {
     if (tensor->offset < end) {
       throw InputError(file_name, at_byte(tensor->offset, tensor->name),
                        fmt::format("its data overlap the {}, which ends at byte {}", previous, end));
     }
-    end = tensor->offset + tensor->count() * size_of(tensor->type);
+    refuse_stray_bytes(bytes, end, tensor->offset, file_name);
+    end = end_of(*tensor);
     previous = fmt::format("field \"{}\"", tensor->name);
   }
+  refuse_stray_bytes(bytes, end, bytes.size(), file_name);
 }
 
-/// IEEE 754 binary16.
-float half_to_float(std::uint16_t half) {
-  const int exponent = (half >> 10) & 0x1f;
-  const int mantissa = half & 0x3ff;
-  float magnitude = 0;
-  if (exponent == 0x1f) {
-    magnitude =
-        mantissa != 0 ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
-  } else if (exponent == 0) {
-    magnitude = std::ldexp(static_cast<float>(mantissa), -24);
-  } else {
-    magnitude = std::ldexp(static_cast<float>(mantissa + 0x400), exponent - 25);
-  }
-  return (half & 0x8000) != 0 ? -magnitude : magnitude;
+void append(std::vector<std::byte>& out, std::span<const std::byte> raw) {
+  // Not insert(): inlined into an empty vector, GCC 12 takes it for an overflow.
+  const std::size_t at = out.size();
+  out.resize(at + raw.size());
+  std::memcpy(out.data() + at, raw.data(), raw.size());
 }
-
-template <typename T, typename Convert>
-std::vector<float> convert(std::span<const std::byte> bytes, Convert to_float) {
-  std::vector<float> out(bytes.size() / sizeof(T));
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    T value;
-    std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
-    out[i] = to_float(value);
-  }
-  return out;
-}
-
 template <typename T>
 requires std::is_arithmetic_v<T>
-void append(std::vector<std::byte>& out, T value) {
-  const auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
-  out.insert(out.end(), raw.begin(), raw.end());
-}
+void append(std::vector<std::byte>& out, T value) { append(out, std::as_bytes(std::span(&value, 1))); }
 void append(std::vector<std::byte>& out, std::string_view text) {
-  const auto raw = std::as_bytes(std::span(text));
-  out.insert(out.end(), raw.begin(), raw.end());
-}
-
-constexpr std::size_t aligned(std::size_t position) {
-  return (position + kAlignment - 1) / kAlignment * kAlignment;
+  append(out, std::as_bytes(std::span(text)));
 }
 
 }  // namespace
-
-std::size_t size_of(TensorType type) {
-  switch (type) {
-    case TensorType::kU8:
-    case TensorType::kI8:
-      return 1;
-    case TensorType::kU16:
-    case TensorType::kI16:
-    case TensorType::kF16:
-      return 2;
-    case TensorType::kU32:
-    case TensorType::kI32:
-    case TensorType::kF32:
-      return 4;
-    case TensorType::kU64:
-    case TensorType::kI64:
-    case TensorType::kF64:
-      return 8;
-  }
-  throw InternalError("unknown tensor type");
-}
-
-std::string_view name_of(TensorType type) {
-  constexpr std::array<std::string_view, 11> kNames{"u8",  "i8",  "u16", "i16", "u32", "i32",
-                                                    "u64", "i64", "f16", "f32", "f64"};
-  return kNames.at(static_cast<std::size_t>(type) - 1);
-}
-
-std::size_t Tensor::count() const {
-  std::size_t n = 1;
-  for (const std::size_t extent : shape) n *= extent;
-  return n;
-}
-
-std::string Tensor::shape_text() const { return fmt::format("[{}]", fmt::join(shape, ",")); }
-
-std::vector<float> Tensor::floats() const {
-  if (type == TensorType::kF32) return convert<float>(bytes, [](float x) { return x; });
-  if (type == TensorType::kF64) return convert<double>(bytes, [](double x) { return static_cast<float>(x); });
-  SPECTRACE_CHECK(type == TensorType::kF16);
-  return convert<std::uint16_t>(bytes, half_to_float);
-}
-
-Tensor Tensor::from_floats(std::string name, std::vector<std::size_t> shape, std::span<const float> values) {
-  Tensor tensor{.name = std::move(name), .type = TensorType::kF32, .shape = std::move(shape), .bytes = {}};
-  SPECTRACE_CHECK(tensor.count() == values.size());
-  const auto raw = std::as_bytes(values);
-  tensor.bytes.assign(raw.begin(), raw.end());
-  return tensor;
-}
-
-Tensor Tensor::from_text(std::string name, std::string_view text) {
-  Tensor tensor{.name = std::move(name), .type = TensorType::kU8, .shape = {text.size()}, .bytes = {}};
-  append(tensor.bytes, text);
-  return tensor;
-}
 
 bool TensorFile::has_magic(std::span<const std::byte> bytes) {
   return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
@@ -316,7 +277,8 @@ TensorFile TensorFile::parse(std::span<const std::byte> bytes, std::string file_
     if (out.find(tensor.name) != nullptr) in.fail(begin, "a second field of this name");
     out.tensors_.push_back(std::move(tensor));
   }
-  refuse_overlaps(out.tensors_, in.position(), out.file_name_);
+  refuse_overlaps_and_strays(out.tensors_, bytes, in.position(), out.file_name_);
+  refuse_shifted(out.tensors_, out.file_name_);
   for (Tensor& tensor : out.tensors_) {
     const auto raw = bytes.subspan(tensor.offset, tensor.count() * size_of(tensor.type));
     tensor.bytes.assign(raw.begin(), raw.end());
@@ -376,7 +338,7 @@ std::vector<std::byte> TensorFile::serialize() const {
   append(out, kMajorVersion);
   append(out, kMinorVersion);
   append(out, static_cast<std::uint32_t>(tensors_.size()));
-  std::size_t offset = aligned(header_size);
+  std::size_t offset = aligned(header_size, kAlignment);
   for (const Tensor& t : tensors_) {
     append(out, static_cast<std::uint16_t>(t.name.size()));
     append(out, t.name);
@@ -384,10 +346,10 @@ std::vector<std::byte> TensorFile::serialize() const {
     append(out, static_cast<std::uint8_t>(t.type));
     append(out, static_cast<std::uint64_t>(offset));
     for (const std::size_t extent : t.shape) append(out, static_cast<std::uint64_t>(extent));
-    offset = aligned(offset + t.bytes.size());
+    offset = aligned(offset + t.bytes.size(), kAlignment);
   }
   for (const Tensor& t : tensors_) {
-    out.resize(aligned(out.size()));
+    out.resize(aligned(out.size(), kAlignment));
     out.insert(out.end(), t.bytes.begin(), t.bytes.end());
   }
   return out;

@@ -46,8 +46,9 @@ struct Tensor {
 class TensorFile {
  public:
   /// Throws InputError naming the byte offset and field: wrong magic (other programs' .bsdf are told
-  /// apart by name: Zemax, LightTools, Radiance, XML), truncated or overlapping fields, unknown types, sizes
-  /// that overflow or exceed the file. Memory is bounded by the file's size.
+  /// apart by name: Zemax, LightTools, Radiance, XML), truncated or overlapping fields, bytes of no field
+  /// that are no padding, unknown types, sizes that overflow or exceed the file. Memory is bounded by the
+  /// file's size.
   static TensorFile read(const std::filesystem::path& file);
   static TensorFile parse(std::span<const std::byte> bytes, std::string file_name);
   /// True where the bytes begin like a tensor file.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 
 namespace spectrace {
 namespace {
@@ -102,6 +103,15 @@ std::size_t TensorReader::rank(std::string_view name, std::size_t largest) const
     fail(name, fmt::format("has {} terms, expected 1 to {}", rank, largest));
   }
   return rank;
+}
+
+void TensorReader::refuse_unknown(std::span<const std::string_view> known) const {
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const Tensor& tensor : file_.tensors()) {
+    if (std::find(known.begin(), known.end(), tensor.name) == known.end()) {
+      fail(tensor.name, "is no field of a separated material" + suggestion(tensor.name, names));
+    }
+  }
 }
 
 void TensorReader::fail(std::string_view name, std::string problem) const {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -82,6 +83,51 @@ TEST(MeasuredTables, ReadingInvertsWriting) {
       EXPECT_FALSE(back.valid_was_inverted);
     }
   }
+}
+
+TEST(MeasuredTables, NoFlippedByteOfTheHeaderGoesUnnoticed) {
+  for (const bool rgb : {false, true}) {
+    TensorFile file = measured_to_tensors(make_measured({.rgb = rgb}));
+    const std::array<std::uint32_t, 2> version{1, 0};  // as the database's own files have it
+    Tensor tensor{.name = "version", .type = TensorType::kU32, .shape = {2}, .bytes = {}};
+    const auto raw = std::as_bytes(std::span(version));
+    tensor.bytes.assign(raw.begin(), raw.end());
+    file.add(std::move(tensor));
+    std::vector<std::byte> bytes = file.serialize();
+    const TensorFile whole = TensorFile::parse(bytes, "a.bsdf");
+    const MeasuredTables tables = measured_from_tensors(whole);
+    std::size_t passed = 0;
+    for (std::size_t at = 0; at < whole.tensors().front().offset; ++at) {
+      for (const unsigned flip : {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0xff}) {
+        SCOPED_TRACE(testing::Message() << "byte " << at << " flipped by " << flip);
+        bytes[at] ^= std::byte(flip);
+        try {
+          expect_same(measured_from_tensors(TensorFile::parse(bytes, "a.bsdf")), tables);
+          ++passed;
+        } catch (const InputError& e) {
+          EXPECT_EQ(e.diagnostics().size(), 1U);
+        }
+        bytes[at] ^= std::byte(flip);
+      }
+    }
+    // Of what nothing is read from: the type of `version`; padding that description may as well hold.
+    EXPECT_LE(passed, 12U);
+  }
+}
+
+TEST(MeasuredTables, OptionalFieldsUnderAnotherNameAreNoticed) {
+  const TensorFile good = measured_to_tensors(make_measured({}));
+  const auto renamed = [&](std::string_view from, const std::string& to) {
+    return message_of(altered(good, from, [&](Tensor& t) {
+      t.name = to;
+      return true;
+    }));
+  };
+  EXPECT_MENTIONS(renamed("valid", "valjd"),
+                  "field \"valjd\": is no field of a measurement; did you mean \"valid\"?");
+  EXPECT_MENTIONS(renamed("valid", "verson"), "did you mean \"version\"?");
+  // What another program adds is its own business.
+  EXPECT_EQ(renamed("valid", "measured_by"), "(no error)");
 }
 
 TEST(MeasuredTables, LastSliceThatCopiesTheOneBeforeIsNotMeasured) {

@@ -130,6 +130,9 @@ TEST(SeparatedTables, HostileFieldsAreNamed) {
   EXPECT_NE(message(with(Tensor::from_text("format", "spectrace separated material 2"))).find("format"),
             std::string::npos);
   EXPECT_NE(message(with(Tensor::from_floats("rho_s", {8, 1, 1}, good))).find("rho_s"), std::string::npos);
+  TensorFile misspelt = with(Tensor::from_floats("c_d", {8}, good));
+  misspelt.add(Tensor::from_floats("analytik", {8}, good));
+  EXPECT_NE(message(misspelt).find("did you mean \"analytic\"?"), std::string::npos);
 }
 
 TEST(SeparatedTables, EveryMissingFieldIsNamed) {

@@ -152,6 +152,44 @@ TEST(TensorFile, RefusesSharedBytes) {
   EXPECT_MENTIONS(message_of(bad), "overlap the header");
 }
 
+TEST(TensorFile, RefusesBytesThatBelongToNoField) {
+  const std::vector<std::byte> good = example().serialize();
+  const TensorFile file = TensorFile::parse(good, "");
+  const std::uint64_t grid = file.find("grid")->offset, last = file.find("last")->offset;
+  auto bad = good;
+  bad[grid - 1] = std::byte(1);  // behind the four letters of the first field
+  EXPECT_MENTIONS(message_of(bad), "byte " + std::to_string(grid - 1) + ": belongs to no field");
+  bad = good;
+  put<std::uint64_t>(bad, kGridShape, 1);  // half of the grid
+  EXPECT_MENTIONS(message_of(bad), "byte " + std::to_string(grid + 14) + ": belongs to no field");
+  bad = good;
+  bad.push_back(std::byte(1));
+  EXPECT_MENTIONS(message_of(bad), "byte " + std::to_string(last + 4) + ": belongs to no field");
+  bad.back() = std::byte(0);
+  EXPECT_EQ(message_of(bad), "(no error)");
+}
+
+TEST(TensorFile, RefusesAFieldThatLiesElsewhereThanTheOthersSay) {
+  TensorFile file;
+  for (const char* name : {"a", "b", "c", "d"})
+    file.add(Tensor::from_floats(name, {3}, std::array{0.f, 0.f, 0.f}));
+  const std::vector<std::byte> good = file.serialize();
+  const TensorFile whole = TensorFile::parse(good, "");
+  constexpr std::size_t kEntry = 2 + 1 + 2 + 1 + 8 + 8, kThirdOffset = kFirstEntry + 2 * kEntry + 6;
+  const std::uint64_t third = whole.tensors()[2].offset;
+  auto bad = good;
+  put<std::uint64_t>(bad, kThirdOffset, third + 4);  // only zeros move
+  EXPECT_MENTIONS(message_of(bad), "field \"c\": its data do not lie where those of the other fields end");
+
+  // Other writers may pack, or align more.
+  for (const std::uint64_t step : {12, 64}) {
+    bad.assign(good.begin(), good.begin() + std::ptrdiff_t(whole.tensors()[0].offset));
+    bad.resize(1024);
+    for (std::size_t i = 0; i < 4; ++i) put<std::uint64_t>(bad, kFirstEntry + i * kEntry + 6, 128 + i * step);
+    EXPECT_EQ(message_of(bad), "(no error)") << step;
+  }
+}
+
 TEST(TensorFile, RefusesDuplicateNamesAndTooManyFields) {
   TensorFile file;
   file.add(Tensor::from_text("aa", "x"));
