@@ -94,10 +94,14 @@ HalfDifferenceGrid read_nodes(const TensorReader& reader) {
                   fmt::format("each must be a whole number in [2, {}]", HalfDifferenceGrid::kMaxDimension));
     }
   }
-  return {.n_theta_h = int(nodes[0]),
-          .n_theta_d = int(nodes[1]),
-          .n_phi_d = int(nodes[2]),
-          .quadratic_theta_h = reader.is_quadratic()};
+  const HalfDifferenceGrid grid{.n_theta_h = int(nodes[0]),
+                                .n_theta_d = int(nodes[1]),
+                                .n_phi_d = int(nodes[2]),
+                                .quadratic_theta_h = reader.is_quadratic()};
+  if (grid.size() > HalfDifferenceGrid::kMaxSize) {
+    reader.fail("nodes", fmt::format("more than {} cells", HalfDifferenceGrid::kMaxSize));
+  }
+  return grid;
 }
 
 /// The basis, and what there is of s_F and s_D: a file holds what its richest model needs.
@@ -161,11 +165,11 @@ bool is_compact(const TensorFile& tensors) {
 
 CompactTables compact_from_tensors(const TensorFile& tensors) {
   const TensorReader reader(tensors);
+  reader.refuse_unknown(kFields);
   CompactTables tables;
   tables.axis = reader.axis();
   tables.grid = read_nodes(reader);
   const std::size_t n = tables.axis.size();
-  reader.refuse_unknown(kFields);
   tables.c_d = reader.non_negative("c_d", std::array{n});
   tables.s_sun = reader.non_negative("s_sun", std::array{n});
 

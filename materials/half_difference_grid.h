@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "materials/half_difference.h"
 
@@ -41,6 +42,8 @@ struct HalfDifferenceGrid {
 
   /// A grid dimension beyond this is no measurement, but would overflow `int` arithmetic on indices.
   static constexpr std::size_t kMaxDimension = 1 << 14;
+  /// Nor may size() be beyond this: GridPoint counts cells in 32 bits.
+  static constexpr std::size_t kMaxSize = std::numeric_limits<std::uint32_t>::max();
 };
 
 }  // namespace spectrace

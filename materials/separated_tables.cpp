@@ -39,6 +39,10 @@ HalfDifferenceGrid read_grid(const TensorFile& tensors, const TensorReader& read
   grid.n_theta_h = static_cast<int>(rho_s.shape[0]);
   grid.n_theta_d = static_cast<int>(rho_s.shape[1]);
   grid.n_phi_d = static_cast<int>(rho_s.shape[2]);
+  if (grid.size() > HalfDifferenceGrid::kMaxSize) {
+    reader.fail("rho_s", fmt::format("shape {}: more than {} cells", rho_s.shape_text(),
+                                     HalfDifferenceGrid::kMaxSize));
+  }
   return grid;
 }
 
@@ -69,11 +73,11 @@ SeparatedTables separated_from_tensors(const TensorFile& tensors) {
   if (const std::string format = reader.text("format"); format != kFormat) {
     reader.fail("format", fmt::format("expected \"{}\"", kFormat));
   }
+  reader.refuse_unknown(kFields);
   SeparatedTables tables;
   tables.axis = reader.axis();
   tables.grid = read_grid(tensors, reader);
   const std::size_t n = tables.axis.size();
-  reader.refuse_unknown(kFields);
   const auto h = static_cast<std::size_t>(tables.grid.n_theta_h),
              d = static_cast<std::size_t>(tables.grid.n_theta_d),
              p = static_cast<std::size_t>(tables.grid.n_phi_d);

@@ -161,9 +161,12 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
 
 std::string SeparationOptions::problem() const {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  if (grid.n_theta_h < 2 || grid.n_theta_d < 2 || grid.n_phi_d < 2)
-    return "grid: each dimension must be at least 2";
-  if (grid.size() > std::size_t(1) << 28) return "grid: at most 2^28 cells";
+  for (const int nodes : {grid.n_theta_h, grid.n_theta_d, grid.n_phi_d}) {
+    if (nodes < 2 || std::size_t(nodes) > HalfDifferenceGrid::kMaxDimension) {
+      return fmt::format("grid: each dimension must lie in [2, {}]", HalfDifferenceGrid::kMaxDimension);
+    }
+  }
+  if (grid.size() > kMaxCells) return fmt::format("grid: at most {} cells", kMaxCells);
   if (!positive(epsilon)) return "epsilon must be > 0";
   if (starts < 1) return "starts must be at least 1";
   if (!(std::isfinite(diffraction_prior) && diffraction_prior >= 0)) return "diffraction_prior must be >= 0";

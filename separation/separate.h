@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -48,8 +50,12 @@ enum class DiffuseForm {
 /// than these change no picture by 0.1 dB (docs/separation.md).
 inline constexpr int kDefaultResidualRank = 4;
 
+/// Cells of the largest grid: CellTable counts their nodes, two footprints a cell, in 32 bits.
+inline constexpr std::size_t kMaxCells =
+    std::numeric_limits<std::uint32_t>::max() / (2 * std::size_t(MeasuredBrdf::Footprint::kMaxNodes));
+
 struct SeparationOptions {
-  HalfDifferenceGrid grid;  ///< paper: 90 x 90 x 180; spacing of theta_h: separation.md
+  HalfDifferenceGrid grid;  ///< at most kMaxCells; paper: 90 x 90 x 180; spacing of theta_h: separation.md
   CosineWeight weight = CosineWeight::kProduct;
   DiffuseColour colour = DiffuseColour::kDark;
   DiffuseForm diffuse = DiffuseForm::kLambert;

@@ -53,5 +53,17 @@ TEST(PackedTable, DamagedOrOfAnotherShapeIsNoTable) {
   EXPECT_FALSE(unpack_u8(no_frame, kShape));
 }
 
+TEST(PackedTable, NoFrameAsksForMoreThanItsBytesCanHold) {
+  // A frame of RFC 8878 whose header promises 2^40 bytes in a single segment, and nothing behind it.
+  Tensor frame{.name = "t", .type = TensorType::kU8, .shape = {14}, .bytes = {}};
+  for (const int b : {0x28, 0xb5, 0x2f, 0xfd, 0xe0, 0, 0, 0, 0, 0, 1, 0, 0, 0})
+    frame.bytes.push_back(std::byte(b));
+  EXPECT_FALSE(unpack_u8(frame, {.planes = 1 << 14, .rows = 1 << 13, .columns = 1 << 13}));
+  // The most that blocks can hold, a table of equal values, is still read.
+  constexpr PlaneShape kEven{.planes = 16, .rows = 1024, .columns = 1024};
+  const std::vector<std::uint8_t> zeros(kEven.size());
+  EXPECT_EQ(unpack_u8(pack("t", std::span<const std::uint8_t>(zeros), kEven), kEven), zeros);
+}
+
 }  // namespace
 }  // namespace spectrace

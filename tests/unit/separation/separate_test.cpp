@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -310,6 +312,8 @@ TEST(SeparationOptions, EveryFieldOutOfRangeIsNamed) {
   options = {};
   options.grid.n_phi_d = 1;
   EXPECT_NE(options.problem().find("grid"), std::string::npos);
+  options.grid.n_phi_d = HalfDifferenceGrid::kMaxDimension + 1;
+  EXPECT_NE(options.problem().find("grid"), std::string::npos);
   options = {};
   options.epsilon = -1;
   EXPECT_NE(options.problem().find("epsilon"), std::string::npos);
@@ -319,6 +323,20 @@ TEST(SeparationOptions, EveryFieldOutOfRangeIsNamed) {
   options = {};
   options.threads = -1;
   EXPECT_NE(options.problem().find("threads"), std::string::npos);
+}
+
+// Cells and the nodes of their footprints are counted in 32 bits (separation/cell_table.h).
+TEST(Separate, NoGridThatIsAllowedOverflowsItsIndices) {
+  constexpr auto kNodesOfACell =
+      2 * std::size_t(MeasuredBrdf::Footprint::kMaxNodes);  // both orders of a pair
+  constexpr std::size_t kIndices = std::numeric_limits<std::uint32_t>::max();
+  SeparationOptions options;
+  options.grid = {.n_theta_h = 512, .n_theta_d = 512, .n_phi_d = 511};
+  EXPECT_EQ(options.problem(), "");
+  EXPECT_LE(options.grid.size() * kNodesOfACell, kIndices);
+  options.grid.n_phi_d = 512;
+  EXPECT_GT(options.grid.size() * kNodesOfACell, kIndices);
+  EXPECT_EQ(options.problem(), "grid: at most 134217727 cells");
 }
 
 }  // namespace
