@@ -13,6 +13,7 @@
 
 #include "cli/command.h"
 #include "cli/console_progress.h"
+#include "cli/grid_option.h"
 #include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/error.h"
@@ -31,6 +32,7 @@ struct Arguments {
   int threads = 0;
   std::string separate;  // a model's name, "auto", or empty
   double tolerance = kDefaultTolerance;
+  HalfDifferenceGrid grid;
   bool paired = false;
   std::string cache;
   bool strict = false;
@@ -65,6 +67,7 @@ bool separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& 
   const fs::path cache = arguments.cache.empty() ? default_cache() : fs::path(arguments.cache);
   const std::optional<SeparationModel> model = separation_model_named(arguments.separate);  // none: auto
   SeparationOptions options;
+  options.grid = arguments.grid;
   options.threads = arguments.threads;
   const bool may_need_residual = arguments.separate == "auto" || model == SeparationModel::kResidual;
   options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
@@ -176,6 +179,7 @@ void add_render(CLI::App& app, Action& chosen) {
                  "of --separate auto: share of the reflected light a model may get wrong")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  add_grid_option(app, arguments->grid);
   app.add_flag("--paired", arguments->paired,
                "for comparing pictures: whatever describes a measured material, draw the directions that its "
                "diffraction model draws, so that pictures share their noise");

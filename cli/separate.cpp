@@ -11,6 +11,7 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/grid_option.h"
 #include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/file.h"
@@ -29,6 +30,7 @@ constexpr const char* kExamples =
     "  spectrace separate car.bsdf -o car.sep --diffuse table\n"
     "  spectrace separate pearl.bsdf -o pearl.sep --model auto --tolerance 0.02\n"
     "  spectrace separate pearl.bsdf -o pearl.sep --quality 10\n"
+    "  spectrace separate pearl.bsdf -o draft.sep --grid 45x30x36\n"
     "\n"
     "OUT.sep holds the chosen model and all cheaper ones. The report goes to standard output.\n"
     "Exit code 1: the fit is unusable, and OUT.sep is not written.";
@@ -38,6 +40,7 @@ struct Arguments {
   std::string weight = "product", spacing = "quadratic", diffuse = "lambert", residual = "whole",
               colour = "dark";
   std::string model = "diffraction";
+  HalfDifferenceGrid grid;
   double tolerance = kDefaultTolerance;
   int quality = kDefaultQuality;
   bool full = false, analytic = false;
@@ -78,6 +81,7 @@ ExitCode separate_command(const Arguments& arguments) {
   require_folder_of(arguments.output);
   SeparationOptions options;
   options.weight = arguments.weight == "product" ? CosineWeight::kProduct : CosineWeight::kPrinted;
+  options.grid = arguments.grid;
   options.grid.quadratic_theta_h = arguments.spacing == "quadratic";
   options.diffuse = arguments.diffuse == "lambert" ? DiffuseForm::kLambert : DiffuseForm::kTable;
   options.residual = arguments.residual == "whole" ? SpectralResidual::kWhole : SpectralResidual::kPrinted;
@@ -121,6 +125,7 @@ void add_separate(CLI::App& app, Action& chosen) {
                    "cosine weight of eq. 10: as the paper's text says, or as printed")
       ->check(CLI::IsMember({"product", "printed"}))
       ->capture_default_str();
+  add_grid_option(*command, arguments->grid);
   command->add_option("--theta-h-spacing", arguments->spacing, "how the table spaces the half angle")
       ->check(CLI::IsMember({"quadratic", "uniform"}))
       ->capture_default_str();

@@ -14,6 +14,9 @@ namespace spectrace::test {
 
 inline const std::filesystem::path kScenes = std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes";
 
+/// For `separate`: a hundredth of the paper's cells, where a test asks nothing about them.
+inline const std::vector<std::string> kSmallGrid{"--grid", "24x20x30"};
+
 /// Each test has a folder of its own, in which the program runs.
 class Program : public ::testing::Test {
  protected:
@@ -21,6 +24,14 @@ class Program : public ::testing::Test {
     ProgramResult result = run_spectrace(arguments, folder_.path());
     EXPECT_EQ(result.signal, 0) << "the program crashed\n" << result.errors;
     return result;
+  }
+  /// `spectrace separate` of `input` on kSmallGrid.
+  ProgramResult separate(const std::string& input, const std::string& output,
+                         const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments{"separate", input, "-o", output};
+    arguments.insert(arguments.end(), kSmallGrid.begin(), kSmallGrid.end());
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
   }
   /// Exit code 3, one line on standard error that begins with `begin`.
   void expect_bad_input(const std::vector<std::string>& arguments, const std::string& begin) const {

@@ -2,6 +2,7 @@
 // What the program writes: images that do not depend on threads, layers that sum, separations that are kept.
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "core/image/image.h"
 #include "tests/cli/program.h"
@@ -22,24 +23,33 @@ std::vector<std::string> scene_names() {
 
 class EveryScene : public Program, public ::testing::WithParamInterface<std::string> {
  protected:
-  /// The scene, with the demo's measured material replaced by a small one.
-  std::string scene_file() const {
-    std::string text = read_text(kScenes / GetParam());
-    const std::string measured = "../demo-out/pearlescent.bsdf";
-    const std::size_t at = text.find(measured, text.find("\"materials\""));
-    if (at == std::string::npos) return (kScenes / GetParam()).string();
-    write_measured("measured.bsdf");
-    text.replace(at, measured.size(), "measured.bsdf");
-    write_text(folder_ / GetParam(), text);
-    return (folder_ / GetParam()).string();
+  /// The folder of scenes, in which this one has a film of a sixteenth of the pixels and the demo's measured
+  /// material is a small one.
+  void SetUp() override {
+    std::filesystem::create_directory(folder_ / "scenes");
+    for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+      if (entry.path().filename() != GetParam())
+        std::filesystem::create_symlink(entry.path(), folder_.path() / "scenes" / entry.path().filename());
+    }
+    const std::regex size(R"re(("width": )(\d+)(, "height": )(\d+))re");
+    const std::string text = read_text(kScenes / GetParam());
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(text, found, size));
+    const auto quarter = [&](std::size_t group) { return std::to_string(std::stoi(found.str(group)) / 4); };
+    write_text(folder_ / scene_, found.prefix().str() + found.str(1) + quarter(2) + found.str(3) +
+                                     quarter(4) + found.suffix().str());
+    std::filesystem::create_directory(folder_ / "demo-out");
+    write_measured("demo-out/pearlescent.bsdf");
   }
   Image render(const std::string& output, const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments{scene_file(), "-o", output, "--spp", "1"};
+    std::vector<std::string> arguments{scene_, "-o", output, "--spp", "1"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     return read_image(folder_ / output);
   }
+
+  const std::string scene_ = "scenes/" + GetParam();
 };
 
 TEST_P(EveryScene, IsTheSameBitForBitWithOneTwoAndSevenThreads) {
@@ -105,6 +115,10 @@ TEST_F(Render, HeaderSaysWhereTheImageCameFrom) {
 TEST_F(Render, SeparatesOnceAndKeepsTheResult) {
   write_measured("m.bsdf");
   write_scene("scene.json", R"({"name": "m", "type": "measured", "file": "m.bsdf"})");
+  const auto render = [&](const std::string& model, const std::string& output,
+                          const std::string& grid = "24x20x30") {
+    return run({"scene.json", "--separate", model, "-o", output, "--cache", "kept", "--grid", grid});
+  };
   const auto separations = [&] {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
@@ -112,24 +126,28 @@ TEST_F(Render, SeparatesOnceAndKeepsTheResult) {
     }
     return files;
   };
-  ASSERT_EQ(run({"scene.json", "--separate", "fresnel", "-o", "first.exr", "--cache", "kept"}).exit_code, 0);
+  ASSERT_EQ(render("fresnel", "first.exr").exit_code, 0);
   ASSERT_EQ(separations().size(), 1U);
   const std::filesystem::path kept = separations().front();
   const auto written = std::filesystem::last_write_time(kept);
   const std::string content = read_text(kept);
 
-  ASSERT_EQ(run({"scene.json", "--separate", "fresnel", "-o", "second.exr", "--cache", "kept"}).exit_code, 0);
+  ASSERT_EQ(render("fresnel", "second.exr").exit_code, 0);
   EXPECT_EQ(separations(), std::vector<std::filesystem::path>{kept});
   EXPECT_EQ(std::filesystem::last_write_time(kept), written);
   EXPECT_EQ(read_image(folder_ / "first.exr").data, read_image(folder_ / "second.exr").data);
 
   // Another model is in the same file; a damaged one is made again.
-  ASSERT_EQ(run({"scene.json", "--separate", "sun", "-o", "sun.exr", "--cache", "kept"}).exit_code, 0);
+  ASSERT_EQ(render("sun", "sun.exr").exit_code, 0);
   EXPECT_EQ(std::filesystem::last_write_time(kept), written);
   write_text(kept, content.substr(0, content.size() / 2));
-  ASSERT_EQ(run({"scene.json", "--separate", "fresnel", "-o", "third.exr", "--cache", "kept"}).exit_code, 0);
+  ASSERT_EQ(render("fresnel", "third.exr").exit_code, 0);
   EXPECT_EQ(read_text(kept), content);
   EXPECT_EQ(read_image(folder_ / "first.exr").data, read_image(folder_ / "third.exr").data);
+
+  // Another grid is another separation.
+  ASSERT_EQ(render("fresnel", "coarse.exr", "12x8x6").exit_code, 0);
+  EXPECT_EQ(separations().size(), 2U);
 }
 
 }  // namespace

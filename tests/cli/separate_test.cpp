@@ -21,7 +21,7 @@ TEST_F(Separate, AcquiresAllWavelengthsOfTheDatabase) {
 
 TEST_F(Separate, WritesAMaterialAndReportsOnIt) {
   write_measured("m.bsdf");
-  const ProgramResult separated = run({"separate", "m.bsdf", "-o", "m.sep", "--report", "m.report.json"});
+  const ProgramResult separated = separate("m.bsdf", "m.sep", {"--report", "m.report.json"});
   ASSERT_EQ(separated.exit_code, 0) << separated.errors;
   EXPECT_TRUE(separated.says("step 1")) << separated.output;
   EXPECT_NE(read_text(folder_ / "m.report.json").find("step1"), std::string::npos);
@@ -29,18 +29,34 @@ TEST_F(Separate, WritesAMaterialAndReportsOnIt) {
   EXPECT_EQ(richest_model(read_separated_source(folder_ / "m.sep")), SeparationModel::kDiffraction);
 }
 
+TEST_F(Separate, TakesTheGridItIsGiven) {
+  write_measured("m.bsdf");
+  const ProgramResult separated = run({"separate", "m.bsdf", "-o", "m.sep", "--full", "--grid", "12x8x6"});
+  ASSERT_EQ(separated.exit_code, 0) << separated.errors;
+  const HalfDifferenceGrid grid = read_separated(folder_ / "m.sep").grid;
+  EXPECT_EQ(grid.n_theta_h, 12);
+  EXPECT_EQ(grid.n_theta_d, 8);
+  EXPECT_EQ(grid.n_phi_d, 6);
+  EXPECT_TRUE(run({"separate", "--help"}).says("90x90x180")) << "the paper's, by default";
+  for (const char* wrong :
+       {"12x8", "12x8x6x4", "12,8,6", "12x8x1", "-1x8x6", "9999999999x8x6", "16000x16000x2"}) {
+    SCOPED_TRACE(wrong);
+    expect_usage_error({"separate", "m.bsdf", "-o", "wrong.sep", "--grid", wrong});
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "wrong.sep"));
+}
+
 TEST_F(Separate, StoresWhatItIsAskedFor) {
   write_measured("m.bsdf");
-  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "full.sep", "--full"}).exit_code, 0);
+  ASSERT_EQ(separate("m.bsdf", "full.sep", {"--full"}).exit_code, 0);
   EXPECT_NO_THROW(read_separated(folder_ / "full.sep"));  // plain tables
-  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "sun.sep", "--model", "sun"}).exit_code, 0);
-  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "rest.sep", "--model", "residual", "--analytic"}).exit_code, 0);
+  ASSERT_EQ(separate("m.bsdf", "sun.sep", {"--model", "sun"}).exit_code, 0);
+  ASSERT_EQ(separate("m.bsdf", "rest.sep", {"--model", "residual", "--analytic"}).exit_code, 0);
   EXPECT_EQ(richest_model(read_separated_source(folder_ / "sun.sep")), SeparationModel::kSun);
   EXPECT_EQ(richest_model(read_separated_source(folder_ / "rest.sep")), SeparationModel::kResidual);
   EXPECT_LT(std::filesystem::file_size(folder_ / "sun.sep"),
             std::filesystem::file_size(folder_ / "rest.sep"));
-  const ProgramResult chosen =
-      run({"separate", "m.bsdf", "-o", "auto.sep", "--model", "auto", "--tolerance", "1"});
+  const ProgramResult chosen = separate("m.bsdf", "auto.sep", {"--model", "auto", "--tolerance", "1"});
   ASSERT_EQ(chosen.exit_code, 0) << chosen.errors;
   EXPECT_TRUE(chosen.says("sun: error")) << chosen.output;  // anything is within a tolerance of 1
   EXPECT_EQ(richest_model(read_separated_source(folder_ / "auto.sep")), SeparationModel::kSun);
@@ -50,7 +66,7 @@ TEST_F(Separate, StoresWhatItIsAskedFor) {
 
 TEST_F(Separate, AMaterialCannotBeRenderedByAModelItsFileLacks) {
   write_measured("m.bsdf");
-  ASSERT_EQ(run({"separate", "m.bsdf", "-o", "sun.sep", "--model", "sun"}).exit_code, 0);
+  ASSERT_EQ(separate("m.bsdf", "sun.sep", {"--model", "sun"}).exit_code, 0);
   const auto scene_with = [&](const std::string& model) {
     write_text(folder_ / "s.json",
                R"({"camera": {"type": "pinhole", "origin": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1]},
