@@ -26,13 +26,17 @@ struct CellPoint {
 
 class Chart {
  public:
-  explicit Chart(Vec3 zero) : offset_(std::atan2(double(zero.y), double(zero.x))) {}
+  explicit Chart(Vec3 zero)
+      : offset_(std::atan2(double(zero.y), double(zero.x))),
+        cos_(std::cos(offset_)),
+        sin_(std::sin(offset_)) {}
 
   [[nodiscard]] CellPoint to_cell(Vec3 w) const {
     const double r2 = double(w.x) * w.x + double(w.y) * w.y;
     const double t = w.z < 0.5 ? 1 - double(w.z) : r2 / (1 + double(w.z));
-    const double phi = std::remainder(std::atan2(double(w.y), double(w.x)) - offset_, 2 * kPiD);
-    return {std::sqrt(std::clamp(t, 0.0, 1.0)), phi};
+    // Turned first: a difference of angles would need its remainder by 2π.
+    const double x = double(w.x) * cos_ + double(w.y) * sin_, y = double(w.y) * cos_ - double(w.x) * sin_;
+    return {std::sqrt(std::clamp(t, 0.0, 1.0)), std::atan2(y, x)};
   }
   [[nodiscard]] Vec3 to_direction(CellPoint p) const {
     const double sin_theta = p.s * std::sqrt(2 - p.s * p.s), phi = p.phi + offset_;
@@ -41,7 +45,7 @@ class Chart {
   }
 
  private:
-  double offset_;
+  double offset_, cos_, sin_;
 };
 
 struct Cell {

@@ -42,8 +42,8 @@ struct SamplingTestOptions {
   std::size_t samples = 1'000'000;
   /// Decide where cells go; independent of the samples tested. Cells then hold about
   /// samples · pilot_per_cell / pilots of them each, however narrow the lobe.
-  std::size_t pilots = 100'000;
-  std::size_t pilots_per_cell = 100;
+  std::size_t pilots = 25'000;
+  std::size_t pilots_per_cell = 25;
   /// Relative, of each leaf's integral. A systematic error ε adds samples · ε² = 1 to a statistic whose
   /// standard deviation is sqrt(2 · 1000 cells) = 45.
   double quadrature_tolerance = 1e-3;
