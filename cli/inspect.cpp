@@ -27,12 +27,14 @@ constexpr const char* kExamples =
     "  spectrace inspect mystique.brdf\n"
     "  spectrace inspect out.exr --json\n"
     "  spectrace inspect scenes/cornell_box.json\n"
+    "  spectrace inspect scenes/materials/glossy.json\n"
     "\n"
     "Tells the file's fields, units and ranges; of measurements what is measured, invalid and extrapolated.\n"
-    "Files are told apart by content: tensor files (.bsdf, .sep), scenes (JSON), images (EXR, HDR, PNG, "
-    "...);\nother measurements by their extension: Cornell's scattered text (.brdf), MERL's .binary.";
+    "Files are told apart by content: tensor files (.bsdf, .sep), scenes and materials (JSON), images "
+    "(EXR, HDR, PNG, ...);\nother measurements by their extension: Cornell's scattered text (.brdf), MERL's "
+    ".binary.";
 
-enum class FileKind { kTensors, kMeasured, kScene, kImage };
+enum class FileKind { kTensors, kMeasured, kJson, kImage };
 
 FileKind kind_of(const std::filesystem::path& file) {
   std::array<char, 64> head{};
@@ -47,11 +49,11 @@ FileKind kind_of(const std::filesystem::path& file) {
   // Damaged ones and those of other programs: their reader says what is wrong.
   if (extension == ".bsdf" || extension == ".sep") return FileKind::kTensors;
   if (extension == ".brdf" || extension == ".binary") return FileKind::kMeasured;
-  if (extension == ".json") return FileKind::kScene;
+  if (extension == ".json") return FileKind::kJson;
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool is_json =
       first != std::string_view::npos && (text[first] == '{' || text.substr(first, 2) == "//");
-  return is_json ? FileKind::kScene : FileKind::kImage;
+  return is_json ? FileKind::kJson : FileKind::kImage;
 }
 
 ExitCode inspect_command(const std::string& file, bool as_json) {
@@ -63,8 +65,8 @@ ExitCode inspect_command(const std::string& file, bool as_json) {
     case FileKind::kMeasured:
       report = inspect_measured(file);
       break;
-    case FileKind::kScene:
-      report = inspect_scene(file);
+    case FileKind::kJson:
+      report = is_material(file) ? inspect_material(file) : inspect_scene(file);
       break;
     case FileKind::kImage:
       report = inspect_image(file);
@@ -108,7 +110,8 @@ InspectReport inspect_image(const std::filesystem::path& file) {
 }
 
 void add_inspect(CLI::App& app, Action& chosen) {
-  CLI::App* command = app.add_subcommand("inspect", "Tell what is in a measurement, .sep, image or scene");
+  CLI::App* command =
+      app.add_subcommand("inspect", "Tell what is in a measurement, .sep, image, scene or material");
   command->footer(kExamples);
   struct Arguments {
     std::string file;

@@ -49,5 +49,8 @@ struct ValueStatistics {
 [[nodiscard]] InspectReport inspect_tensors(const std::filesystem::path& file);
 [[nodiscard]] InspectReport inspect_measured(const std::filesystem::path& file);  ///< of other layouts
 [[nodiscard]] InspectReport inspect_scene(const std::filesystem::path& file);
+[[nodiscard]] InspectReport inspect_material(const std::filesystem::path& file);
+/// Whether this JSON file is meant as a single material rather than as a scene.
+[[nodiscard]] bool is_material(const std::filesystem::path& file);
 
 }  // namespace spectrace::cli

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// `spectrace inspect` of scenes, as their file describes them: no mesh, image or measurement is opened.
+// `spectrace inspect` of scenes and single materials, as their file describes them: no mesh, image or
+// measurement is opened.
 #include <fmt/format.h>
 
-#include <string_view>
-#include <type_traits>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "cli/inspect_report.h"
+#include "core/base/file.h"
+#include "core/base/json.h"
+#include "materials/material.h"
 #include "renderer/scene_desc.h"
 
 namespace spectrace::cli {
@@ -21,27 +27,50 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 std::string text_of(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-std::vector<InspectCell> describe(const MaterialDesc& material) {
-  const auto [type, detail] = std::visit(
-      Overloaded{
-          [](const Lambert&) { return std::pair<std::string, std::string>("lambert", ""); },
-          [](const SmoothConductor&) { return std::pair<std::string, std::string>("smooth conductor", ""); },
-          [](const RoughConductor&) { return std::pair<std::string, std::string>("rough conductor", ""); },
-          [](const Dielectric&) { return std::pair<std::string, std::string>("dielectric", ""); },
-          [](const Glossy&) { return std::pair<std::string, std::string>("glossy", ""); },
-          [](const Diffractive&) { return std::pair<std::string, std::string>("diffractive", ""); },
-          [](const MeasuredDesc& m) {
-            return std::pair<std::string, std::string>("measured", m.file.string());
-          },
-          [](const SeparatedDesc& s) {
-            return std::pair<std::string, std::string>("separated",
-                                                       fmt::format("{}, model {}", s.file.string(),
-                                                                   s.analytic ? "analytic"
-                                                                   : s.model  ? name_of(*s.model)
-                                                                              : "richest"));
-          }},
+std::string text_of(const Ggx& ggx) {
+  return ggx.alpha_x == ggx.alpha_y ? fmt::format("alpha {}", ggx.alpha_x)
+                                    : fmt::format("alpha {} x {}", ggx.alpha_x, ggx.alpha_y);
+}
+
+std::string text_of(const SeparatedDesc& s) {
+  const std::string model = s.analytic ? "analytic" : s.model ? name_of(*s.model) : "richest";
+  return fmt::format("{}, model {}", s.file.string(), model);
+}
+
+/// Of a material: what kind, and what tells it from others of the kind.
+using TypeAndDetail = std::pair<std::string, std::string>;
+TypeAndDetail type_and_detail(const MaterialDesc& material) {
+  return std::visit(
+      Overloaded{[](const Lambert&) -> TypeAndDetail {
+                   return {"lambert", ""};
+                 },
+                 [](const SmoothConductor&) -> TypeAndDetail {
+                   return {"smooth conductor", ""};
+                 },
+                 [](const RoughConductor& c) -> TypeAndDetail {
+                   return {"rough conductor", text_of(c.ggx)};
+                 },
+                 [](const Dielectric&) -> TypeAndDetail {
+                   return {"dielectric", ""};
+                 },
+                 [](const Glossy& g) -> TypeAndDetail {
+                   return {"glossy", fmt::format("{}, specular_scale {}, diffuse_scale {}", text_of(g.ggx),
+                                                 g.specular_scale, g.diffuse_scale)};
+                 },
+                 [](const Diffractive& d) -> TypeAndDetail {
+                   return {"diffractive",
+                           fmt::format("{}, micro-roughness {} nm rms over {} nm, specular_scale {}, "
+                                       "diffuse_scale {}",
+                                       text_of(d.ggx), d.micro.rms_nm, d.micro.correlation_nm,
+                                       d.specular_scale, d.diffuse_scale)};
+                 },
+                 [](const MeasuredDesc& m) -> TypeAndDetail {
+                   return {"measured", m.file.string()};
+                 },
+                 [](const SeparatedDesc& s) -> TypeAndDetail {
+                   return {"separated", text_of(s)};
+                 }},
       material.kind);
-  return {material.name, type, detail};
 }
 
 std::vector<InspectCell> describe(const LightDesc& light) {
@@ -112,12 +141,35 @@ InspectReport inspect_scene(const std::filesystem::path& file) {
 
   materials.title = "materials";
   materials.columns = {"name", "type", "detail"};
-  for (const MaterialDesc& material : scene.materials) materials.rows.push_back(describe(material));
+  for (const MaterialDesc& material : scene.materials) {
+    const auto [type, detail] = type_and_detail(material);
+    materials.rows.push_back({material.name, type, detail});
+  }
 
   lights.title = "lights";
   lights.columns = {"type", "detail"};
   for (const LightDesc& light : scene.lights) lights.rows.push_back(describe(light));
   return {summary, camera, shapes, materials, lights};
+}
+
+bool is_material(const std::filesystem::path& file) {
+  JsonDocument document = JsonDocument::load(file);
+  const JsonValue root = document.root();
+  return root.is_object() && root.get("type").exists() && !root.get("shapes").exists() &&
+         !root.get("camera").exists();
+}
+
+InspectReport inspect_material(const std::filesystem::path& file) {
+  const MaterialDesc material = load_material(file);
+  const auto [type, detail] = type_and_detail(material);
+  InspectSection section;
+  section.title = "material";
+  section.add("file", file.string());
+  section.add("sha256", sha256_hex(read_file(file)));
+  section.add("name", material.name);
+  section.add("type", type);
+  section.add("detail", detail);
+  return {section};
 }
 
 }  // namespace spectrace::cli

@@ -109,6 +109,25 @@ TEST(Inspect, TellsWhatASceneHolds) {
   document.throw_if_wrong();
 }
 
+TEST(Inspect, TellsWhatALoneMaterialIs) {
+  const auto scenes = std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes";
+  JsonDocument document = inspect_json(scenes / "materials/glossy.json");
+  const JsonValue material = document.root().require("material");
+  EXPECT_EQ(material.require("name").string(), "glossy");
+  EXPECT_EQ(material.require("type").string(), "glossy");
+  EXPECT_EQ(material.require("detail").string(), "alpha 0.12, specular_scale 0.5, diffuse_scale 0.5");
+  EXPECT_EQ(material.require("sha256").string().size(), 64U);
+  document.throw_if_wrong();
+
+  const TemporaryFolder folder;
+  write_text(folder / "paint.json", R"({"name": "paint", "type": "measured", "file": "p.bsdf"})");
+  EXPECT_TRUE(run_spectrace({"inspect", (folder / "paint.json").string()}).says("p.bsdf"));
+  write_text(folder / "wrong.json", "{\"name\": \"paint\",\n \"type\": \"glosy\"}");
+  const ProgramResult wrong = run_spectrace({"inspect", (folder / "wrong.json").string()});
+  EXPECT_EQ(wrong.exit_code, 3);
+  EXPECT_TRUE(wrong.complains("wrong.json:2:10: /type: ")) << wrong.errors;
+}
+
 TEST(Inspect, RefusesWhatItDoesNotKnow) {
   const TemporaryFolder folder;
   write_text(folder / "radiance.bsdf", "<?xml version=\"1.0\"?>\n<WindowElement>");
