@@ -14,6 +14,7 @@
 #include "cli/inspect_report.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "materials/measured_albedo.h"
 #include "materials/measured_tables.h"
 #include "materials/separated_lookup.h"
 #include "materials/tensor_file.h"
@@ -109,6 +110,13 @@ InspectSection elevation_table(const MeasuredTables& tables) {
   return section;
 }
 
+void add_albedo(InspectSection& section, const MeasuredTables& tables) {
+  const AlbedoPeak peak = largest_albedo(MeasuredBrdf(tables));
+  section.add("albedo_max", peak.albedo);
+  section.add("albedo_max_elevation_deg", peak.theta_deg);
+  if (const auto warning = albedo_warning(peak, tables.axis)) section.add("warning", *warning);
+}
+
 InspectSection measured_summary(const MeasuredTables& tables) {
   InspectSection section;
   section.title = "measurement";
@@ -141,6 +149,7 @@ InspectSection measured_summary(const MeasuredTables& tables) {
   section.add("negative_luminances_clamped", tables.negative_luminances);
   section.add("ndf_cells_of_zero", count_zero(tables.ndf.begin(), tables.ndf.end()));
   section.add("smallest_sigma", double(*std::min_element(tables.sigma.begin(), tables.sigma.end())));
+  add_albedo(section, tables);
   return section;
 }
 

@@ -110,6 +110,10 @@ void print_summary(const fs::path& file, const RenderOptions& options, const Ren
       "{}: {} x {}, {} samples a pixel, {:.2f} s on {} threads, {:.3g} million paths/s, {} invalid samples\n",
       file.string(), result.image.width, result.image.height, options.spp, report.seconds, report.threads,
       double(report.paths) / report.seconds * 1e-6, report.invalid_samples);
+  if (report.extrapolated_share > 0) {
+    fmt::print("extrapolated: {:.2g} % of the measured values seen lie beyond the last measured elevation\n",
+               100 * report.extrapolated_share);
+  }
   fmt::print("kernel: {}\neffects: {}\n", report.kernel, fmt::join(report.effects_used, ", "));
   for (const std::string& skipped : report.effects_skipped) {
     fmt::print("skipped: {}\n", skipped);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "materials/measured_albedo.h"
 #include "renderer/scene_shapes.h"
 
 namespace spectrace {
@@ -44,10 +45,24 @@ std::string digest_of(const MaterialDesc& material) {
   return file == nullptr ? "" : fmt::format("{}: {}", material.name, sha256_hex(read_file(*file)));
 }
 
-Float last_measured_cosine(const Material& material) {
+/// Null where it is no measurement.
+const MeasuredBrdf* measured_of(const Material& material) {
   const auto* paired = std::get_if<PairedBrdf>(&material);
-  const auto* measured = paired != nullptr ? paired->measured() : std::get_if<MeasuredBrdf>(&material);
+  return paired != nullptr ? paired->measured() : std::get_if<MeasuredBrdf>(&material);
+}
+
+Float last_measured_cosine(const Material& material) {
+  const MeasuredBrdf* const measured = measured_of(material);
   return measured == nullptr ? 0 : std::max(Float(0), std::cos(Float(measured->last_measured_theta_i())));
+}
+
+/// Hard case H10: what was measured is kept, and said.
+void note_albedo(const std::string& name, const Material& material, Progress& progress) {
+  const MeasuredBrdf* const measured = measured_of(material);
+  if (measured == nullptr) return;
+  if (const auto warning = albedo_warning(largest_albedo(*measured), measured->axis())) {
+    progress.note(fmt::format("{}: {}", name, *warning));
+  }
 }
 
 Environment build_environment(const EnvironmentDesc& light) {
@@ -93,6 +108,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   std::vector<std::string> digests;
   for (const MaterialDesc& material : description.materials) {
     materials.push_back(build_material(material));
+    note_albedo(material.name, materials.back(), progress);
     measured_cosines.push_back(last_measured_cosine(materials.back()));
     if (std::string digest = digest_of(material); !digest.empty()) {
       digests.push_back(std::move(digest));

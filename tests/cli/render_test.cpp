@@ -5,7 +5,9 @@
 #include <regex>
 
 #include "core/image/image.h"
+#include "materials/measured_tables.h"
 #include "tests/cli/program.h"
+#include "tests/support/synthetic_measured.h"
 
 namespace spectrace::test {
 namespace {
@@ -110,6 +112,24 @@ TEST_F(Render, HeaderSaysWhereTheImageCameFrom) {
   }
   EXPECT_EQ(std::get<std::int64_t>(metadata.at("spectrace:spp")), 3);
   EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:seed")), "5");
+}
+
+TEST_F(Render, SaysWhereAMeasurementReflectsTooMuchAndHowMuchOfItIsNone) {
+  MeasuredTables bright = make_measured({});
+  for (float& x : bright.spectra) x *= 100;
+  measured_to_tensors(bright).write(folder_ / "bright.bsdf");
+  write_scene("bright.json", R"({"name": "m", "type": "measured", "file": "bright.bsdf"})");
+  const ProgramResult result = run({"bright.json", "-o", "bright.exr"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(result.complains("m: albedo ")) << result.errors;
+  // A ball is seen at every elevation, so also at those that were not measured.
+  EXPECT_TRUE(result.says("extrapolated: ")) << result.output;
+  EXPECT_TRUE(run({"inspect", "bright.bsdf"}).says("reflects more light than it receives"));
+
+  write_lambert_scene("ball.json");
+  const ProgramResult plain = run({"ball.json"});
+  EXPECT_FALSE(plain.complains("albedo")) << plain.errors;
+  EXPECT_FALSE(plain.says("extrapolated")) << plain.output;
 }
 
 TEST_F(Render, SeparatesOnceAndKeepsTheResult) {
