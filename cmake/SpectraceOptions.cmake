@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Language level, warnings and the switches of the whole build.
 option(SPECTRACE_BUILD_TESTS "Build the test programs" ON)
+option(SPECTRACE_BUILD_BENCH "Build the micro-benchmarks too (docs/validation.md)" OFF)
 option(SPECTRACE_WERROR "Treat warnings as errors" OFF)
 option(SPECTRACE_DOUBLE "Build the light path in double precision (validation only)" OFF)
 set(SPECTRACE_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined or thread")
