@@ -29,7 +29,7 @@ struct Features {
   friend constexpr bool operator==(const Features&, const Features&) = default;
 };
 
-/// For lists and messages: flag, name, and what a scene lacks that leaves it out.
+/// For lists and messages: flag, name, and why it is left out.
 struct FeatureInfo {
   bool Features::*flag;
   std::string_view name;
@@ -46,7 +46,7 @@ inline constexpr std::array<FeatureInfo, 11> kFeatureInfos{{
     {&Features::textures, "textures", "no material varies over its surface"},
     {&Features::instances, "instances", "none in the scene"},
     {&Features::lobe_layers, "layers by lobe", "not asked for"},
-    {&Features::specular_parts, "parts of the specular layer", "no separated material that has them"},
+    {&Features::specular_parts, "parts of the specular layer", "not asked for, or no separated material that has them"},
 }};
 
 /// Everything on.
@@ -75,8 +75,8 @@ constexpr bool covers(const Features& kernel, const Features& needed) {
 struct EffectList {
   std::vector<std::string> used, skipped;
 };
-/// `needed` are used. Of the others, those that `kernel` carries all the same are not called skipped for
-/// free: "instances: none in the scene (simulated all the same)".
+/// `needed` are used, all others skipped; where `kernel` still asks whether the scene has one, it says so:
+/// "instances: none in the scene (the kernel checks for it all the same)".
 [[nodiscard]] EffectList list_effects(const Features& needed, const Features& kernel);
 
 }  // namespace spectrace
