@@ -29,31 +29,12 @@ constexpr bool is_signed(int layer) { return layer > int(Layer::kSpecularFresnel
 /// How many of the layers are kept apart, from the first on.
 enum class LayerSet : std::uint8_t { kBeauty = 1, kLobes = 5, kSpecularParts = kLayerCount };
 
-/// Radiance of one path by lane, in double: the layers of a path then sum to its beauty to 1e-15.
-struct LaneSums {
-  std::array<double, kLanes> v{};
-};
-
 /// What one path brings.
 struct PathValue {
   std::array<Xyz, kLayerCount> xyz{};
   bool valid = true;  ///< all of it finite and >= 0
   /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
   std::uint32_t measured = 0, extrapolated = 0;
-};
-
-/// How much each lane of a path adds to X, Y and Z.
-class LaneToXyz {
- public:
-  /// Lanes of density 0 (terminated) add nothing.
-  explicit LaneToXyz(const SampledWavelengths& lambda);
-  /// Adds `sums` to `xyz`. False where a lane that counts is not finite, or negative unless
-  /// `may_be_negative`.
-  bool add(const LaneSums& sums, Xyz& xyz, bool may_be_negative = false) const;
-
- private:
-  std::array<Xyz, kLanes> weight_{};
-  std::array<bool, kLanes> counts_{};
 };
 
 /// Pixels may be added to from several threads as long as each pixel has one.

@@ -6,6 +6,7 @@
 
 #include "core/math/math.h"
 #include "core/math/sampler.h"
+#include "core/spectra/lane_to_xyz.h"
 #include "renderer/features.h"
 #include "renderer/film.h"
 #include "renderer/scene.h"

@@ -144,15 +144,4 @@ double srgb_decode(double encoded) {
   return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
 }
 
-Xyz sampled_to_xyz(const SampledSpectrum& radiance, const SampledWavelengths& lambda) {
-  Xyz sum{};
-  for (int i = 0; i < kLanes; ++i) {
-    if (lambda.pdf_per_nm(i) == 0) continue;
-    const Xyz bar = cie_xyz_bar(lambda.lambda_nm(i));
-    const double weight = double(radiance[i]) / (double(lambda.pdf_per_nm(i)) * kLanes * cie_y_integral());
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * bar[c];
-  }
-  return sum;
-}
-
 }  // namespace spectrace

@@ -34,8 +34,4 @@ Xyz rgb_to_xyz(const Rgb& rgb);
 double srgb_encode(double linear);
 double srgb_decode(double encoded);
 
-/// Adds one wavelength-sample estimate to XYZ sums: Σ_lanes L_i · (x̄,ȳ,z̄)(λ_i) / pdf_i / kLanes / ∫ȳ; lanes
-/// of density 0 (terminated) are skipped.
-Xyz sampled_to_xyz(const SampledSpectrum& radiance, const SampledWavelengths& lambda);
-
 }  // namespace spectrace

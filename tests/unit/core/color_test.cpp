@@ -118,13 +118,5 @@ TEST(Color, TransferCurveRoundTripsAndIsContinuous) {
   EXPECT_NEAR(srgb_encode(2), 1, 1e-15);
 }
 
-TEST(Color, SampledEstimateSkipsTerminatedLanes) {
-  std::array<Float, kLanes> nm, pdf{};
-  nm.fill(555);
-  pdf[0] = Float(0.01);
-  const Xyz xyz = sampled_to_xyz(SampledSpectrum(2), {nm, pdf});
-  EXPECT_NEAR(xyz[1], 2 / 0.01 / kLanes / cie_y_integral(), 1e-6);
-}
-
 }  // namespace
 }  // namespace spectrace
