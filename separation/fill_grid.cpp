@@ -29,15 +29,23 @@ void fill_below_horizon(const HalfDifferenceGrid& grid, std::vector<float>& tabl
   }
 }
 
-/// Rows still without any value take the nearest theta_h.
+/// Rows still without any value take the nearest theta_h that has one, of two as near the lower.
 void fill_empty_rows(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+  const int n = grid.n_theta_h;
   for (int d = 0; d < grid.n_theta_d; ++d) {
     for (int p = 0; p < grid.n_phi_d; ++p) {
-      float last = 0;
-      for (int h = 0; h < grid.n_theta_h; ++h) {
-        float& value = table[grid.index(h, d, p)];
-        if (std::isnan(value)) value = last;
-        last = value;
+      const auto value = [&](int h) -> float& { return table[grid.index(h, d, p)]; };
+      int below = -1;  // the last node that had a value by itself
+      for (int h = 0; h < n; ++h) {
+        if (!std::isnan(value(h))) {
+          below = h;
+          continue;
+        }
+        int above = h + 1;
+        while (above < n && std::isnan(value(above))) ++above;
+        const bool has_above = above < n, has_below = below >= 0;
+        const bool takes_above = has_above && (!has_below || above - h < h - below);
+        value(h) = takes_above ? value(above) : has_below ? value(below) : 0;
       }
     }
   }

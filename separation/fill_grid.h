@@ -12,9 +12,9 @@ namespace spectrace {
 /// Marks a node without a value.
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// `table` is [theta_h][theta_d][phi_d], kNoValue where there is none. Such nodes take those of their
-/// nearest neighbours in phi_d, else in theta_h; the poles become one value each, so that lookups are
-/// continuous.
+/// `table` is [theta_h][theta_d][phi_d], kNoValue where there is none. Such nodes take the value of their
+/// nearest neighbour in phi_d (the mean of two), else in theta_h, else 0; the poles become one value each, so
+/// that lookups are continuous.
 void fill_unmeasured(const HalfDifferenceGrid& grid, std::vector<float>& table);
 
 }  // namespace spectrace
