@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 #include <type_traits>
 #include <variant>
@@ -14,6 +13,7 @@
 #include "cli/inspect_report.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/math/math.h"
 #include "materials/measured_albedo.h"
 #include "materials/measured_tables.h"
 #include "materials/separated_lookup.h"
@@ -23,7 +23,7 @@ namespace spectrace::cli {
 
 namespace {
 
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+double degrees(double radians) { return radians * 180 / kPi64; }
 
 /// What the numbers of a field are measured in (Dupuy & Jakob 2018; for ours docs/file-formats.md).
 std::string_view unit_of(std::string_view field) {

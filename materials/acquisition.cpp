@@ -19,8 +19,6 @@ namespace spectrace {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
 /// The weight of a wavelength in `luminance`, which drives sampling: the observer's, and a floor so that what
 /// reflects only outside the visible is still drawn.
 constexpr double kInvisibleWeight = 0.01;
@@ -100,17 +98,18 @@ MeasuredTables empty_tables(const AcquisitionOptions& options, const SpectralAxi
   MeasuredTables t;
   t.file_name = options.description;
   t.description = options.description;
-  const double last_cos = std::cos(options.last_elevation_deg * kPiD / 180);
+  const double last_cos = std::cos(options.last_elevation_deg * kPi64 / 180);
   const int measured = options.elevations - 1;
   for (int i = 0; i < measured; ++i) {
     t.theta_i.push_back(static_cast<float>(std::acos(1 - (1 - last_cos) * i / (measured - 1))));
   }
-  t.theta_i.push_back(static_cast<float>(kPiD / 2));
+  t.theta_i.push_back(static_cast<float>(kPi64 / 2));
   if (options.azimuths == 1) {
     t.phi_i = {0};
   } else {
     for (int i = 0; i < options.azimuths; ++i) {
-      t.phi_i.push_back(static_cast<float>(-kPiD + 2 * kPiD / options.symmetry * i / (options.azimuths - 1)));
+      t.phi_i.push_back(
+          static_cast<float>(-kPi64 + 2 * kPi64 / options.symmetry * i / (options.azimuths - 1)));
     }
   }
   t.warp_size = options.warp_size;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
@@ -28,8 +27,8 @@ double analytic_specular(const AnalyticParameters& p, double cos_h, double cos_d
                          double cos_o) {
   const double fresnel = p.f_0 + (1 - p.f_0) * std::pow(1 - cos_d, 5);  // eq. 13
   const double a2 = p.alpha * p.alpha, cos2 = cos_h * cos_h;
-  const double t = a2 * cos2 + (1 - cos2);             // (a² - 1) cos² + 1 without cancellation
-  const double ndf = a2 / (std::numbers::pi * t * t);  // eq. 14
+  const double t = a2 * cos2 + (1 - cos2);  // (a² - 1) cos² + 1 without cancellation
+  const double ndf = a2 / (kPi64 * t * t);  // eq. 14
   return p.rho_0 * fresnel * ndf * masking_over_cosine(cos_i, a2) * masking_over_cosine(cos_o, a2);
 }
 

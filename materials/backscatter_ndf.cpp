@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "materials/normal_square.h"
 
 namespace spectrace {
 
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 // The largest eigenvalue stands well apart: changes fall below single precision in about ten steps.
 constexpr int kMaxIterations = 50;
 constexpr double kConverged = 1e-7;
@@ -19,7 +18,7 @@ constexpr double kConverged = 1e-7;
 /// ∫ over the azimuth of max(0, ω·ωm), in closed form.
 double clamped_cosine_over_azimuth(double theta, double theta_m) {
   const double a = std::cos(theta) * std::cos(theta_m), b = std::sin(theta) * std::sin(theta_m);
-  if (a >= b) return 2 * kPiD * a;
+  if (a >= b) return 2 * kPi64 * a;
   const double phi = std::acos(-a / b);
   return 2 * (a * phi + b * std::sin(phi));
 }
@@ -31,14 +30,14 @@ class ProjectedArea {
   ProjectedArea(int width, int rows) : width_(static_cast<std::size_t>(width)), is_isotropic_(rows == 1) {
     for (int y = 0; y < rows; ++y) {
       for (int x = 0; x < width; ++x) {
-        const double u = double(x) / (width - 1), theta = u * u * kPiD / 2;
+        const double u = double(x) / (width - 1), theta = u * u * kPi64 / 2;
         const double end = x == 0 || x == width - 1 ? 0.5 : 1;
-        const double azimuth_step = is_isotropic_ ? 1 : 2 * kPiD / rows;
+        const double azimuth_step = is_isotropic_ ? 1 : 2 * kPi64 / rows;
         theta_.push_back(theta);
         direction_.push_back(
             square_to_normal({Float(u), is_isotropic_ ? Float(0.5) : Float(y) / Float(rows)}));
         // dω = sinθ dθ dφ with dθ = π u du
-        solid_angle_.push_back(end / (width - 1) * kPiD * u * std::sin(theta) * azimuth_step);
+        solid_angle_.push_back(end / (width - 1) * kPi64 * u * std::sin(theta) * azimuth_step);
       }
     }
   }

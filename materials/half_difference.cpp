@@ -2,13 +2,12 @@
 #include "materials/half_difference.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "core/math/math.h"
 
 namespace spectrace {
 
 namespace {
-
-constexpr double kPi64 = std::numbers::pi;
 
 /// In double: theta_d near 90 degrees is a difference of nearly opposite directions.
 struct Triple {

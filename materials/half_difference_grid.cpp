@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/math/math.h"
 
 namespace spectrace {
 namespace {
 
-constexpr double kHalfPi = std::numbers::pi / 2;
+constexpr double kHalfPi = kPi64 / 2;
 
 /// A node and its upper neighbour.
 struct Bracket {
@@ -29,7 +30,7 @@ double HalfDifferenceGrid::theta_h(double i) const {
   return (quadratic_theta_h ? x * x : x) * kHalfPi;
 }
 double HalfDifferenceGrid::theta_d(double j) const { return j / n_theta_d * kHalfPi; }
-double HalfDifferenceGrid::phi_d(double k) const { return k / n_phi_d * std::numbers::pi; }
+double HalfDifferenceGrid::phi_d(double k) const { return k / n_phi_d * kPi64; }
 
 double HalfDifferenceGrid::coordinate_h(double theta_h_rad) const {
   const double x = std::max(theta_h_rad, 0.0) / kHalfPi;
@@ -39,7 +40,7 @@ double HalfDifferenceGrid::coordinate_d(double theta_d_rad) const {
   return std::clamp(theta_d_rad / kHalfPi * n_theta_d, 0.0, n_theta_d - 1.0);
 }
 double HalfDifferenceGrid::coordinate_p(double phi_d_rad) const {
-  const double turns = phi_d_rad / std::numbers::pi;
+  const double turns = phi_d_rad / kPi64;
   const double k = (turns - std::floor(turns)) * n_phi_d;
   return k < n_phi_d ? k : 0.0;  // rounding may reach n_phi_d, which is node 0
 }

@@ -7,17 +7,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/nearest.h"
+#include "core/math/math.h"
 
 namespace spectrace {
 
 namespace {
 
-constexpr double kPi64 = std::numbers::pi;
 /// On theta_i <= π/2 [rad]: the database writes 1.5707963 and 1.5707964, single precision either side of π/2;
 /// tools that convert from degrees add their own rounding.
 constexpr double kThetaTolerance = 1e-4;

@@ -4,9 +4,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "materials/scattered_brdf.h"
 
 namespace spectrace {
@@ -123,10 +123,10 @@ class Reader {
 
   [[nodiscard]] double elevation(const Token& token, std::string_view name) const {
     const double theta = number(token);
-    if (!(theta >= 0 && theta <= std::numbers::pi / 2 + kThetaTolerance)) {
+    if (!(theta >= 0 && theta <= kPi64 / 2 + kThetaTolerance)) {
       fail(token, fmt::format("{} is {}, expected radians in [0, pi/2]", name, theta));
     }
-    return std::min(theta, std::numbers::pi / 2);
+    return std::min(theta, kPi64 / 2);
   }
 
   void read_sample(const std::vector<Token>& row) {

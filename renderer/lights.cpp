@@ -12,8 +12,6 @@ namespace spectrace {
 
 namespace {
 
-constexpr double kPiDouble = 3.14159265358979323846;
-
 /// Mean over wavelengths as paths draw them.
 double mean_over(const WavelengthDistribution& wavelengths, const std::function<Float(Float)>& at) {
   constexpr int kSteps = 64;  // by quantiles: ample for a choice that need not be exact
@@ -72,22 +70,21 @@ Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& gr
     Emitter emitter;
     const double radiance = size > 0 ? mean_of(wavelengths, emissions_[area_[next].emission]) : 0;
     for (std::uint32_t i = 0; i < size; ++i, ++next) {
-      emitter.powers.push_back(kPiDouble * light_area(area_[next].shape) * radiance);
+      emitter.powers.push_back(kPi64 * light_area(area_[next].shape) * radiance);
     }
     emitters.push_back(std::move(emitter));
   }
   SPECTRACE_CHECK(next == area_.size());
-  const double disk = kPiDouble * sqr(double(scene_radius));  // what the scene shows a distant light
+  const double disk = kPi64 * sqr(double(scene_radius));  // what the scene shows a distant light
   for (const DeltaLight& light : delta_) {
     const auto* point = std::get_if<PointLight>(&light);
     emitters.push_back(
-        {{point != nullptr ? 4 * kPiDouble * mean_of(wavelengths, point->intensity)
+        {{point != nullptr ? 4 * kPi64 * mean_of(wavelengths, point->intensity)
                            : disk * mean_of(wavelengths, std::get<DirectionalLight>(light).irradiance)}});
   }
   if (environment_) {
     const double mean = mean_over(wavelengths, [&](Float nm) { return environment_->mean_radiance(nm); });
-    emitters.push_back(
-        {{4 * kPiDouble * std::max(disk, 1e-30) * mean}});  // 1e-30: an empty scene has no disk
+    emitters.push_back({{4 * kPi64 * std::max(disk, 1e-30) * mean}});  // 1e-30: an empty scene has no disk
   }
   double sum = 0;
   for (double p : choice_probabilities(emitters)) {

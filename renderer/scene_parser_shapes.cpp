@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/nearest.h"
+#include "core/math/math.h"
 #include "renderer/scene_parser.h"
 
 namespace spectrace {
@@ -49,7 +50,7 @@ bool is_singular(const Transform& t) {
 Rows rotation(Vec3 axis, double angle_deg) {
   const double norm = std::hypot(static_cast<double>(axis.x), axis.y, axis.z);
   const double x = axis.x / norm, y = axis.y / norm, z = axis.z / norm;
-  const double angle_rad = std::fmod(angle_deg, 360.0) * (std::acos(-1.0) / 180);
+  const double angle_rad = std::fmod(angle_deg, 360.0) * (kPi64 / 180);
   const double c = std::cos(angle_rad), s = std::sin(angle_rad), d = 1 - c;
   return {{{c + d * x * x, d * x * y - s * z, d * x * z + s * y, 0},
            {d * x * y + s * z, c + d * y * y, d * y * z - s * x, 0},

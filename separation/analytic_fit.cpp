@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
+#include "core/math/math.h"
 #include "separation/lobe_equations.h"
 
 namespace spectrace {
@@ -194,7 +194,7 @@ AnalyticSolution fit_analytic(const CellTable& table, const SeparationOptions& o
   constexpr std::array kStartAlpha{0.2, 0.05, 0.5, 0.01, 0.1, 0.9};
   const double epsilon = options.epsilon;
   const LobeCells cells = lobe_cells(table, epsilon, 1), part = lobe_cells(table, epsilon, kScoutStride);
-  const double diffuse = std::min(std::numbers::pi * median_value(table), 0.9);
+  const double diffuse = std::min(kPi64 * median_value(table), 0.9);
 
   const AnalyticFit lambert{.albedo_d = fit_lambert(cells, epsilon, fit_lambert(part, epsilon, diffuse)),
                             .rho_0 = 0,

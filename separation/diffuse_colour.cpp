@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "separation/analytic_fit.h"
 #include "separation/parallel.h"
 
@@ -73,9 +73,9 @@ Arrow arrow_at(const CellTable& table, double epsilon, const FreeFresnelFit& fit
       const double k = shape(fit.alpha, cos_h, cos_i, cos_o) * w;
       const double dk = (shape(alpha_above, cos_h, cos_i, cos_o) - shape(alpha_below, cos_h, cos_i, cos_o)) *
                         w / (2 * kStep);
-      const double model = fit.albedo_d / std::numbers::pi * w + fit.factor[d] * k + epsilon;
+      const double model = fit.albedo_d / kPi64 * w + fit.factor[d] * k + epsilon;
       const double r = std::log((double(table.mean[i]) * w + epsilon) / model);
-      const double j_a = -w / std::numbers::pi / model, j_l = -fit.factor[d] * dk / model, j_f = -k / model;
+      const double j_a = -w / kPi64 / model, j_l = -fit.factor[d] * dk / model, j_f = -k / model;
       s.cost += r * r;
       s.g_a += j_a * r, s.g_l += j_l * r, s.g_f[d] += j_f * r;
       s.aa += j_a * j_a, s.al += j_a * j_l, s.ll += j_l * j_l;
@@ -163,7 +163,7 @@ std::vector<double> row_weights(const CellTable& table, const Cells& cells, cons
 /// is not determined.
 std::vector<double> cell_weights(const CellTable& table, const Cells& cells, const FreeFresnelFit& fit) {
   const std::size_t n_d = fit.factor.size(), n = cells.index.size();
-  const double lambert = fit.albedo_d / std::numbers::pi, level = dark_level(cells.shape);
+  const double lambert = fit.albedo_d / kPi64, level = dark_level(cells.shape);
   std::vector<double> v(n), dark(n_d), weight_sum(n_d), highlight(n_d);
   double dark_count = 0;
   for (std::size_t c = 0; c < n; ++c) {
@@ -247,7 +247,7 @@ std::optional<std::vector<float>> diffuse_colour(const MeasuredBrdf& measured, c
   }
   std::vector<float> c_d(sum.size());
   for (std::size_t k = 0; k < sum.size(); ++k) {
-    c_d[k] = static_cast<float>(std::max(std::numbers::pi * sum[k], 0.0));
+    c_d[k] = static_cast<float>(std::max(kPi64 * sum[k], 0.0));
   }
   return c_d;
 }

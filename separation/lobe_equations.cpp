@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "separation/instruction_set.h"
 #include "separation/parallel.h"
 #include "separation/precise_log.h"
@@ -49,9 +49,9 @@ SPECTRACE_KERNEL inline void add_batch(const Batch& c, const LobeVector& x, doub
     const double root_i = std::sqrt(c.cos_i[k] * c.cos_i[k] + tan_i);
     const double root_o = std::sqrt(c.cos_o[k] * c.cos_o[k] + tan_o);
     const double sum_i = c.cos_i[k] + root_i, sum_o = c.cos_o[k] + root_o;
-    const double unit = a2 / (std::numbers::pi * t * t * sum_i * sum_o) * c.weight[k];  // eqs. 14 and 15
+    const double unit = a2 / (kPi64 * t * t * sum_i * sum_o) * c.weight[k];  // eqs. 14 and 15
     const double dlog_a = 2 - 4 * a2 * cos2 / t - tan_i / (root_i * sum_i) - tan_o / (root_o * sum_o);
-    const double lambert = c.weight[k] / std::numbers::pi;
+    const double lambert = c.weight[k] / kPi64;
     const double specular = (x[1] + x[2] * c.schlick[k]) * unit;
     const double model = x[0] * lambert + specular + epsilon;
     const double scale = -c.counts[k] / model;  // r = ln(data) - ln(model)

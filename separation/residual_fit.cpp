@@ -5,12 +5,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "materials/half_difference.h"
 #include "separation/fill_grid.h"
 #include "separation/parallel.h"
@@ -46,7 +46,7 @@ class Residuals {
     if (!pair.any) return 0;
     const std::size_t cell = grid.index(h, d, p), group = cell / std::size_t(grid.n_phi_d);
     const double shape = tables_.diffuse_shape.empty() ? 1.0 : double(tables_.diffuse_shape[cell]);
-    const double diffuse = shape * double(directions.wo.z + directions.wi.z) / std::numbers::pi;
+    const double diffuse = shape * double(directions.wo.z + directions.wi.z) / kPi64;
     const double specular = double(tables_.rho_s[cell]);
     const double mean = mean_albedo_ * diffuse + specular;
     if (!(mean > 0)) return 0;

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "core/math/math.h"
 #include "separation/log_block.h"
 #include "separation/log_root.h"
 #include "separation/parallel.h"
@@ -155,7 +155,7 @@ void fit_eq_18(StripFit& strip, const std::vector<float>& s_d, SpectralFit& fit)
 LobeWeights lobe_weights(const CellTable& table, const SplitResult& split) {
   LobeWeights lobes{.diffuse = std::vector<float>(table.fitted()),
                     .specular = std::vector<float>(table.fitted())};
-  const double lambert = split.albedo_d / std::numbers::pi;
+  const double lambert = split.albedo_d / kPi64;
   for (std::size_t i = 0; i < table.fitted(); ++i) {
     const double w = double(table.weight[i]);
     const double shape = split.diffuse_shape.empty() ? 1.0 : double(split.diffuse_shape[table.cell[i]]);

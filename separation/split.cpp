@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "separation/analytic_fit.h"
 #include "separation/fill_grid.h"
 
@@ -48,7 +48,7 @@ Energies energies(const CellTable& table, double lambert) {
 
 double optimum_cost(const CellTable& table, const AnalyticFit& fit) {
   double cost = 0;
-  const double lambert = fit.albedo_d / std::numbers::pi;
+  const double lambert = fit.albedo_d / kPi64;
   for (int h = 0; h < table.grid.n_theta_h; ++h) {
     const double cos_h = std::cos(table.grid.theta_h(h));
     for (int d = 0; d < table.grid.n_theta_d; ++d) {
@@ -109,7 +109,7 @@ double split_cell(double mean, double diffuse, double specular, double eta_diffu
 }
 
 double lambert_excess(const CellTable& table, double albedo) {
-  const Energies e = energies(table, albedo / std::numbers::pi);
+  const Energies e = energies(table, albedo / kPi64);
   return e.total > 0 ? e.missing / e.total : 0;
 }
 
@@ -118,7 +118,7 @@ SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, bool mat
   SplitResult result;
   result.cost = optimum_cost(table, fit);
   result.albedo_d = fit.albedo_d;
-  Energies e = energies(table, result.albedo_d / std::numbers::pi);
+  Energies e = energies(table, result.albedo_d / kPi64);
   if (!matte && e.total > 0 && (e.total - e.specular) < kEmptyDiffuse * e.total) {
     result.albedo_d = 0;
     e = energies(table, 0);
@@ -127,9 +127,9 @@ SplitResult split_lobes(const CellTable& table, const AnalyticFit& fit, bool mat
     result.rho_s.assign(table.grid.size(), 0.0F);
     return result;
   }
-  result.rho_s = specular_table(table, result.albedo_d / std::numbers::pi);
+  result.rho_s = specular_table(table, result.albedo_d / kPi64);
   if (options.diffuse == DiffuseForm::kTable && e.missing > 0) {
-    result.diffuse_shape = diffuse_table(table, result.albedo_d / std::numbers::pi);
+    result.diffuse_shape = diffuse_table(table, result.albedo_d / kPi64);
   }
   result.specular_share = e.specular / e.total;
   result.lambert_cost = e.missing / e.total;

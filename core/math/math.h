@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/float.h"
 
 namespace spectrace {
 
-inline constexpr Float kPi = Float(3.14159265358979323846);
-inline constexpr Float kInvPi = Float(0.31830988618379067154);
+inline constexpr double kPi64 = std::numbers::pi;  ///< where double is worked in whatever Float is
+inline constexpr Float kPi = Float(kPi64);
+inline constexpr Float kInvPi = Float(std::numbers::inv_pi);
 
 template <typename T>
 constexpr T sqr(T x) {

@@ -6,12 +6,12 @@
 
 #include <cmath>
 
+#include "core/math/math.h"
 #include "tests/support/render_scenes.h"
 
 namespace spectrace::test {
 namespace {
 
-constexpr double kPi64 = 3.14159265358979323846;
 constexpr double kSigmas = 4;
 // Float geometry (camera of 1e-3 degrees, offsets) beside the statistical error: 10x the largest seen.
 constexpr double kRounding = 1e-4;

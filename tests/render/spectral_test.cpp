@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/math/math.h"
 #include "materials/fresnel.h"
 #include "tests/support/render_scenes.h"
 
@@ -66,7 +67,7 @@ SceneDesc pool(const Spectrum& eta) {
 
 /// Where on the pool's floor at depth 1 that look ends: Snell's law.
 double landing(double eta) {
-  const double sin_t = std::sin(0.25 * 3.14159265358979323846) / eta;
+  const double sin_t = std::sin(0.25 * kPi64) / eta;
   return sin_t / std::sqrt(1 - sin_t * sin_t);
 }
 

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 #include <vector>
+
+#include "core/math/math.h"
 
 namespace spectrace::test {
 
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
 
 /// Below this many expected samples Pearson's statistic is no chi-square: such cells are pooled (Cochran
 /// 1954).
@@ -49,7 +48,7 @@ class Chart {
 };
 
 struct Cell {
-  double s0 = 0, s1 = 1, phi0 = -kPiD, phi1 = kPiD;
+  double s0 = 0, s1 = 1, phi0 = -kPi64, phi1 = kPi64;
 };
 
 /// A few pilots, the box around them where most of the leaf's mass lies, and the cell it belongs to.

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "materials/half_difference.h"
 #include "tests/support/chi_square.h"
 
@@ -23,7 +23,7 @@ std::vector<std::byte> merl_file(const RgbBrdf& brdf) {
   for (int h = 0; h < 90; ++h) {
     for (int d = 0; d < 90; ++d) {
       for (int p = 0; p < 180; ++p, ++bin) {
-        const double degree = std::numbers::pi / 180;
+        const double degree = kPi64 / 180;
         const DirectionPair pair = from_half_difference({h * h / 90.0 * degree, d * degree, p * degree});
         if (!(pair.wo.z > 0 && pair.wi.z > 0)) continue;
         const std::array<double, 3> f = brdf(pair.wo, pair.wi);
@@ -43,7 +43,7 @@ std::string scattered_text(const SpectralBrdf& brdf, int count, const std::vecto
   TestRandom random(29);
   for (int i = 0; i < count; ++i) {
     const double theta_i = 1.4 * double(random.uniform()), theta_o = 1.4 * double(random.uniform()),
-                 phi = 2 * std::numbers::pi * (double(random.uniform()) - 0.5);
+                 phi = 2 * kPi64 * (double(random.uniform()) - 0.5);
     const Vec3 wi{Float(std::sin(theta_i)), 0, Float(std::cos(theta_i))};
     const Vec3 wo{Float(std::sin(theta_o) * std::cos(phi)), Float(std::sin(theta_o) * std::sin(phi)),
                   Float(std::cos(theta_o))};

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "tests/support/chi_square.h"
 
 namespace spectrace::test {
@@ -38,7 +38,7 @@ Truth truth_of(const Material& material, float lambda_nm) {
   const SampledWavelengths lambda = at_wavelength(lambda_nm);
   const ShadingPoint at{.lambda = lambda};
   const Vec3 above{0, 0, 1};
-  Truth truth{.c_d = double(evaluate_lobes(material, above, above, at).diffuse[0]) * std::numbers::pi};
+  Truth truth{.c_d = double(evaluate_lobes(material, above, above, at).diffuse[0]) * kPi64};
   // The specular albedo, averaged over views in proportion to their cosine. The share only decides which
   // wavelengths count: 2000 samples give it to 2 %.
   constexpr int kSamples = 2000;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 
 namespace spectrace::test {
 
@@ -36,9 +37,9 @@ std::vector<ShapeDesc> outward_box(const std::string& material) { return box(mat
 MeshDesc polyhedral_sphere(int rings, int segments) {
   MeshDesc mesh;
   for (int r = 0; r <= rings; ++r) {
-    const double theta = 3.14159265358979 * r / rings;
+    const double theta = kPi64 * r / rings;
     for (int s = 0; s < segments; ++s) {
-      const double phi = 2 * 3.14159265358979 * s / segments;
+      const double phi = 2 * kPi64 * s / segments;
       mesh.positions.push_back({Float(std::sin(theta) * std::cos(phi)),
                                 Float(std::sin(theta) * std::sin(phi)), Float(std::cos(theta))});
     }

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/math/math.h"
 
 namespace spectrace::test {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// The centred azimuth of a node of an axis over [0, 1].
-double azimuth(std::size_t k, std::size_t nodes) { return 2 * kPi * double(k) / double(nodes - 1) - kPi; }
+double azimuth(std::size_t k, std::size_t nodes) { return 2 * kPi64 * double(k) / double(nodes - 1) - kPi64; }
 
 /// A ripple in [-1, 1] over the azimuths a of the incident and b of the other direction that has just the
 /// symmetry asked for: a rotation by half a turn for 2, both mirrors for 4, none for 1.
@@ -28,7 +27,7 @@ std::vector<float> azimuths(const SyntheticMeasured& options) {
   if (options.isotropic) return {0};
   const int count = 8 / options.stored_reduction + 1;
   std::vector<float> out;
-  for (int i = 0; i < count; ++i) out.push_back(static_cast<float>(options.first_phi_i + i * kPi / 4));
+  for (int i = 0; i < count; ++i) out.push_back(static_cast<float>(options.first_phi_i + i * kPi64 / 4));
   return out;
 }
 

@@ -2,6 +2,7 @@
 // Small measured BRDFs from formulae: every layout the reader knows, at sizes that tests can loop over.
 #pragma once
 
+#include "core/math/math.h"
 #include "materials/measured_tables.h"
 
 namespace spectrace::test {
@@ -12,7 +13,7 @@ struct SyntheticMeasured {
   int symmetry = 1;
   /// Stored phi_i span 2π / this; any of 1, 2, 4 that divides `symmetry`.
   int stored_reduction = 1;
-  double first_phi_i = -3.14159265358979323846;
+  double first_phi_i = -kPi64;
   bool rgb = false;
   bool jacobian = true;
 };

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "core/math/math.h"
 #include "materials/separated_tables.h"
 
 namespace spectrace::test {
@@ -51,7 +51,7 @@ inline std::shared_ptr<SeparatedTables> synthetic_separated(const SyntheticSepar
       }
       for (int p = 0; p < m.grid.n_phi_d; ++p) {
         const double ripple = 1 + 0.5 * (1 - cos_h) * m.grid.theta_d(d) * std::cos(2 * m.grid.phi_d(p));
-        tables->rho_s.push_back(static_cast<float>(m.rho_0 * ripple * a2 / (std::numbers::pi * t * t) / 2));
+        tables->rho_s.push_back(static_cast<float>(m.rho_0 * ripple * a2 / (kPi64 * t * t) / 2));
       }
     }
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "core/spectra/color.h"
 #include "core/spectra/rgb_uplift.h"
 #include "tests/support/temporary_folder.h"
@@ -83,7 +84,7 @@ TEST(Spectrum, BlackbodyObeysPlanckWienAndStefanBoltzmann) {
       }
     }
     const double sigma = 5.670374419e-8, wien_nm_kelvin = 2.897771955e6;  // CODATA 2018
-    EXPECT_NEAR(integral / (sigma * std::pow(double(kelvin), 4) / 3.14159265358979), 1, 6e-4);
+    EXPECT_NEAR(integral / (sigma * std::pow(double(kelvin), 4) / kPi64), 1, 6e-4);
     EXPECT_NEAR(peak_nm * kelvin / wien_nm_kelvin, 1, 1e-3);  // a float is flat over the peak that far
   }
   EXPECT_EQ(BlackbodySpectrum{3000}.at(1), 0) << "underflows, does not overflow";

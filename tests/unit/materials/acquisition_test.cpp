@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "materials/backscatter_ndf.h"
 #include "materials/normal_square.h"
 #include "tests/support/chi_square.h"
@@ -58,9 +58,8 @@ Errors errors_of(const Material& truth, const AcquisitionOptions& options) {
   test::TestRandom random(17);
   std::vector<double> errors;
   for (int i = 0; i < 20'000; ++i) {
-    const double z = 1 - double(random.uniform()) * (1 - std::cos(85 * std::numbers::pi / 180));
-    const double phi = options.azimuths == 1 ? 0.3 : 2 * std::numbers::pi * random.uniform(),
-                 r = std::sqrt(1 - z * z);
+    const double z = 1 - double(random.uniform()) * (1 - std::cos(85 * kPi64 / 180));
+    const double phi = options.azimuths == 1 ? 0.3 : 2 * kPi64 * random.uniform(), r = std::sqrt(1 - z * z);
     const Vec3 wo{Float(r * std::cos(phi)), Float(r * std::sin(phi)), Float(z)};
     const Float lobe = random.uniform();
     const auto s = sample(truth, wo, {lobe, random.uniform2()}, at);
@@ -121,7 +120,7 @@ TEST(Acquisition, HasTheLayoutOfTheDatabase) {
   EXPECT_FLOAT_EQ(t.axis.lambda_nm().front(), 358.63F);
   EXPECT_FLOAT_EQ(t.axis.lambda_nm().back(), 1001.89F);
   EXPECT_FLOAT_EQ(t.theta_i.front(), 0);
-  EXPECT_NEAR(t.last_measured_theta_i(), 85 * std::numbers::pi / 180, 1e-6);  // 90 degrees repeats it
+  EXPECT_NEAR(t.last_measured_theta_i(), 85 * kPi64 / 180, 1e-6);  // 90 degrees repeats it
 }
 
 TEST(Acquisition, HasTheFieldsOfARealFile) {

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "core/math/math.h"
 
 namespace spectrace::test {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr double kLevel = 1e-4;  // one planted fault must be found far below any level the suite uses
 
 SamplingTestOptions quick(std::uint64_t seed) {
@@ -25,13 +25,13 @@ SamplingTestOptions quick(std::uint64_t seed) {
 std::optional<Vec3> draw_cosine_power(TestRandom& random, double n) {
   const Vec2 u = random.uniform2();
   const double log_z = std::log1p(-double(u.x)) / (n + 1);
-  const double r = std::sqrt(-std::expm1(2 * log_z)), phi = 2 * kPiD * u.y;
+  const double r = std::sqrt(-std::expm1(2 * log_z)), phi = 2 * kPi64 * u.y;
   return Vec3{Float(r * std::cos(phi)), Float(r * std::sin(phi)), Float(std::exp(log_z))};
 }
 double cosine_power_density(Vec3 w, double n) {
   const double sin2 = double(w.x) * w.x + double(w.y) * w.y;
   const double z = w.z < 0.5 ? double(w.z) : std::sqrt(1 - sin2);
-  return (n + 1) / (2 * kPiD) * std::pow(z, n);
+  return (n + 1) / (2 * kPi64) * std::pow(z, n);
 }
 
 TEST(ChiSquare, PValuesAgreeWithTables) {
@@ -78,7 +78,7 @@ TEST(ChiSquare, RejectsALobeWhereNothingIsDrawn) {
   const auto density = [](Vec3 w) {  // a tenth of the mass lies around the x axis, at 45 degrees
     const double cosine = (w.x + w.z) / std::numbers::sqrt2;
     return 0.9 * cosine_power_density(w, 1000) +
-           0.1 * 1001 / (2 * kPiD) * std::pow(std::max(cosine, 0.0), 1000);
+           0.1 * 1001 / (2 * kPi64) * std::pow(std::max(cosine, 0.0), 1000);
   };
   const SamplingTestResult r = test_sampling(draw, density, quick(5));
   EXPECT_LT(r.p_value, kLevel) << r.text();

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "materials/material.h"
 
 namespace spectrace {
@@ -23,7 +23,7 @@ const SampledWavelengths kLambda = wavelengths();
 const ShadingPoint kAt{.lambda = kLambda};
 
 Vec3 at_angle(double theta_deg, bool above = true) {
-  const double theta = theta_deg * std::numbers::pi / 180;
+  const double theta = theta_deg * kPi64 / 180;
   return {Float(std::sin(theta) * 0.8), Float(std::sin(theta) * -0.6),
           Float(above ? std::cos(theta) : -std::cos(theta))};
 }

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "materials/glossy.h"
 #include "tests/support/chi_square.h"
 
@@ -33,13 +33,13 @@ Diffractive etched(Float rms_nm) {
 }
 
 Vec3 at_angle(double theta_deg) {
-  const double theta = theta_deg * std::numbers::pi / 180;
+  const double theta = theta_deg * kPi64 / 180;
   return {Float(std::sin(theta)), 0, Float(std::cos(theta))};
 }
 
 TEST(MicroRoughness, DiffractsTheTotalIntegratedScatter) {
   // At σ = λ / 4π and normal incidence the exponent of the total integrated scatter is 1.
-  const MicroRoughness micro{.rms_nm = Float(500 / (4 * std::numbers::pi))};
+  const MicroRoughness micro{.rms_nm = Float(500 / (4 * kPi64))};
   EXPECT_NEAR(micro.diffracted(1, 500), 1 - std::exp(-1.0), kRounding);
   EXPECT_NEAR(micro.diffracted(Float(0.5), 500), 1 - std::exp(-0.25), kRounding);
   EXPECT_NEAR(micro.diffracted(1, 1000), 1 - std::exp(-0.25), kRounding);
@@ -54,8 +54,7 @@ TEST(MicroRoughness, RadiiFollowTheDensity) {
     constexpr int kSteps = 2000;
     for (int i = 1; i <= kSteps; ++i) {  // ∫ 2π x S(x²) dx, to a share of 80 %
       const double x = double(micro.sample_radius(Float(0.8 * i / kSteps), 600)), middle = (x + last) / 2;
-      inside +=
-          2 * std::numbers::pi * middle * (x - last) * double(micro.density(Float(middle * middle), 600));
+      inside += 2 * kPi64 * middle * (x - last) * double(micro.density(Float(middle * middle), 600));
       last = x;
       EXPECT_NEAR(inside, 0.8 * i / kSteps, 2e-4) << exponent;  // midpoint rule over 2000 steps
     }

@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <numbers>
+
+#include "core/math/math.h"
 
 namespace spectrace {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPiD = std::numbers::pi;
 // A reflectance in [0, 1] from about twenty single-precision operations.
 constexpr double kRounding = 5e-6;
 
@@ -28,7 +28,7 @@ double stack_reflectance(double cos_i, double lambda_nm,
     const auto admittance = [&](Complex n) { return s_polarised ? n * cosine(n) : cosine(n) / n; };
     Complex b = 1, c = admittance(base);
     for (const auto& [n, d] : layers) {
-      const Complex phase = 2 * kPiD * n * d * cosine(n) / lambda_nm, y = admittance(n);
+      const Complex phase = 2 * kPi64 * n * d * cosine(n) / lambda_nm, y = admittance(n);
       const Complex i(0, -1);
       const Complex b2 = std::cos(phase) * b + i / y * std::sin(phase) * c;
       c = i * y * std::sin(phase) * b + std::cos(phase) * c;

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "core/math/math.h"
 #include "materials/conductor.h"
 #include "materials/lambert.h"
 #include "tests/support/chi_square.h"
@@ -34,7 +35,7 @@ TEST(Lambert, IsReflectanceOverPiAtTheShadingPoint) {
   const Vec3 w = normalize({1, 2, 3});
   const auto albedo = [&](Vec2 uv) {
     const BsdfValue v = checked.evaluate({0, 0, 1}, w, {.lambda = lambda, .uv = uv});
-    return double(v.value_cos[0]) * 3.14159265358979 / w.z;
+    return double(v.value_cos[0]) * kPi64 / w.z;
   };
   EXPECT_NEAR(albedo({Float(0.1), Float(0.1)}), 0.2, kRounding);
   EXPECT_NEAR(albedo({Float(0.6), Float(0.1)}), 0.8, kRounding);

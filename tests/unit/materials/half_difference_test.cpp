@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
+
+#include "core/math/math.h"
 
 namespace spectrace {
 namespace {
 
-constexpr double kPi64 = std::numbers::pi;
 // Directions are single precision: an angle is known to a few of its roundings (6e-8), an azimuth to those
 // divided by the sine of its polar angle, here at least 0.05.
 constexpr double kAngleTolerance = 5e-7, kAzimuthTolerance = 1e-5;

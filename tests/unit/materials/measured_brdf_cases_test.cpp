@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
+#include "core/math/math.h"
 #include "materials/measured_brdf.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/synthetic_measured.h"
@@ -21,7 +21,6 @@ namespace {
 using test::make_measured;
 using test::SyntheticMeasured;
 
-constexpr double kPi64 = std::numbers::pi;
 const SampledWavelengths kLambda({450, 550, 610, 690}, {1, 1, 1, 1});
 const ShadingPoint kPoint{kLambda};
 static_assert(kLanes == 4);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "core/math/math.h"
 #include "tests/support/measured_reference.h"
 #include "tests/support/synthetic_measured.h"
 #include "tests/support/test_data.h"
@@ -19,8 +19,6 @@ namespace {
 using test::make_measured;
 using test::MeasuredReference;
 using test::SyntheticMeasured;
-
-constexpr double kPi64 = std::numbers::pi;
 
 /// What is asked of evaluation and of weights, at the 99th percentile of random direction pairs.
 constexpr double kRelativeTolerance = 1e-4;

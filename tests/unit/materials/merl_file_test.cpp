@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "materials/measured_brdf.h"
 #include "materials/microfacet.h"
 #include "tests/support/chi_square.h"
@@ -29,7 +29,7 @@ test::RgbBrdf paint(Float alpha) {
 }
 
 Vec3 random_direction(test::TestRandom& random) {
-  const double theta = 1.3 * double(random.uniform()), phi = 2 * std::numbers::pi * double(random.uniform());
+  const double theta = 1.3 * double(random.uniform()), phi = 2 * kPi64 * double(random.uniform());
   return {Float(std::sin(theta) * std::cos(phi)), Float(std::sin(theta) * std::sin(phi)),
           Float(std::cos(theta))};
 }
@@ -115,7 +115,7 @@ TEST(MerlFile, InvalidBinsAreLeftOutAndCounted) {
   put_double(bytes, 1'458'000 + bin, -1);
   const MerlBrdf one(bytes, "m.binary");
   EXPECT_EQ(one.invalid_bins(), all + 1);
-  const double degree = std::numbers::pi / 180;
+  const double degree = kPi64 / 180;
   const DirectionPair at = from_half_difference({70 * 70 / 90.0 * degree, 10.4 * degree, 90.4 * degree});
   std::array<float, 3> v{};
   EXPECT_TRUE(one.read(at.wo, at.wi, v));  // 64 % of the weight lies on other bins

@@ -6,14 +6,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "tests/support/chi_square.h"
 
 namespace spectrace {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr std::array<Ggx, 4> kLobes{
     {{Float(0.05), Float(0.05)}, {Float(0.3), Float(0.3)}, {1, 1}, {Float(0.1), Float(0.6)}}};
 
@@ -23,15 +22,15 @@ double integrate(const std::function<double(Vec3)>& g) {
   constexpr int kTheta = 2000, kPhi = 256;
   double sum = 0;
   for (int i = 0; i < kTheta; ++i) {
-    const double u = (i + 0.5) / kTheta, theta = u * u * kPiD / 2;
+    const double u = (i + 0.5) / kTheta, theta = u * u * kPi64 / 2;
     for (int j = 0; j < kPhi; ++j) {
-      const double phi = 2 * kPiD * (j + 0.5) / kPhi;
+      const double phi = 2 * kPi64 * (j + 0.5) / kPhi;
       sum += g({Float(std::sin(theta) * std::cos(phi)), Float(std::sin(theta) * std::sin(phi)),
                 Float(std::cos(theta))}) *
              u * std::sin(theta);
     }
   }
-  return sum * kPiD / kTheta * 2 * kPiD / kPhi;
+  return sum * kPi64 / kTheta * 2 * kPi64 / kPhi;
 }
 constexpr double kQuadrature = 1e-4;  // midpoints of smooth integrands, 512 000 of them
 

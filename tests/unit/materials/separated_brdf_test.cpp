@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "core/math/math.h"
 #include "tests/support/chi_square.h"
@@ -28,7 +27,7 @@ const SampledWavelengths kLambda = some_wavelengths();
 const ShadingPoint kPoint{.lambda = kLambda};
 
 Vec3 direction(double theta_deg, double phi_deg) {
-  const double theta = theta_deg * std::numbers::pi / 180, phi = phi_deg * std::numbers::pi / 180;
+  const double theta = theta_deg * kPi64 / 180, phi = phi_deg * kPi64 / 180;
   return {Float(std::sin(theta) * std::cos(phi)), Float(std::sin(theta) * std::sin(phi)),
           Float(std::cos(theta))};
 }
@@ -50,9 +49,9 @@ TEST(SeparatedBrdf, IsTheSumOfEq5And6) {
   const SampledWavelengths lambda(lambda_nm, pdf);
   const double rho_s =
       double(tables->rho_s[grid.index(20, 30, 50)]) / (2 * std::cos(node.theta_h) * std::cos(node.theta_d));
-  const double expected = (double(tables->c_d[3]) / std::numbers::pi +
-                           rho_s * double(tables->s_fresnel[30 * tables->axis.size() + 3])) *
-                          double(pair.wi.z);
+  const double expected =
+      (double(tables->c_d[3]) / kPi64 + rho_s * double(tables->s_fresnel[30 * tables->axis.size() + 3])) *
+      double(pair.wi.z);
   // Float angles: 1e-7 of a coordinate times the slope of the table.
   EXPECT_NEAR(double(brdf.evaluate(pair.wo, pair.wi, {.lambda = lambda}).value_cos[0]) / expected, 1, 1e-4);
 }

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/math/math.h"
 #include "tests/support/synthetic_separated.h"
 
 namespace spectrace {
@@ -51,15 +51,15 @@ TEST(HalfDifferenceGrid, CoordinatesInvertNodesForBothSpacings) {
 
 TEST(HalfDifferenceGrid, QuadraticSpacingIsThatOfMerl) {
   const HalfDifferenceGrid grid;
-  EXPECT_NEAR(grid.theta_h(30) * 180 / std::numbers::pi, 10, 1e-12);  // (30/90)² 90°
+  EXPECT_NEAR(grid.theta_h(30) * 180 / kPi64, 10, 1e-12);  // (30/90)² 90°
 }
 
 TEST(HalfDifferenceGrid, OutsideTheNodesTheNearestHolds) {
   const HalfDifferenceGrid grid;
-  EXPECT_EQ(grid.coordinate_h(std::numbers::pi / 2), 89);
+  EXPECT_EQ(grid.coordinate_h(kPi64 / 2), 89);
   EXPECT_EQ(grid.coordinate_h(-1e-9), 0);
-  EXPECT_EQ(grid.coordinate_d(std::numbers::pi / 2), 89);
-  EXPECT_EQ(grid.coordinate_p(std::numbers::pi), 0);
+  EXPECT_EQ(grid.coordinate_d(kPi64 / 2), 89);
+  EXPECT_EQ(grid.coordinate_p(kPi64), 0);
 }
 
 TEST(HalfDifferenceGrid, LocateInterpolatesLinearlyAndWrapsInPhi) {

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <random>
 
+#include "core/math/math.h"
 #include "renderer/accel_embree.h"
 #include "renderer/surface.h"
 
 namespace spectrace {
 namespace {
-
-constexpr double kPi64 = 3.14159265358979323846;
 
 struct Hit {
   Vec3 position, normal;

@@ -5,8 +5,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "tests/unit/separation/synthetic_cells.h"
 
 namespace spectrace {
@@ -17,7 +17,7 @@ double ggx_as_printed(const AnalyticFit& fit, double cos_h, double cos_d, double
   const double a2 = fit.alpha * fit.alpha;
   const double f = fit.f_0 + (1 - fit.f_0) * std::pow(1 - cos_d, 5);
   const double t = (a2 - 1) * cos_h * cos_h + 1;
-  const double d = a2 / (std::numbers::pi * t * t);
+  const double d = a2 / (kPi64 * t * t);
   const auto g = [&](double c) { return 2 / (1 + std::sqrt(1 + a2 * (1 - c * c) / (c * c))); };
   return fit.rho_0 * f * d * g(cos_i) * g(cos_o) / (4 * cos_i * cos_o);
 }
@@ -30,7 +30,7 @@ SeparationOptions small_grid() {
 
 CellTable material(const AnalyticFit& fit, const SeparationOptions& options) {
   return test::synthetic_cells(options, [&](double h, double d, double i, double o) {
-    return fit.albedo_d / std::numbers::pi + analytic_specular(fit, h, d, i, o);
+    return fit.albedo_d / kPi64 + analytic_specular(fit, h, d, i, o);
   });
 }
 
@@ -97,7 +97,7 @@ TEST(AnalyticFit, AMatteMaterialHasNoSpecularTerm) {
       options);
   EXPECT_TRUE(matte.matte);
   EXPECT_EQ(matte.fit.rho_0, 0);
-  EXPECT_NEAR(matte.fit.albedo_d, 0.1 * std::numbers::pi, 0.01);
+  EXPECT_NEAR(matte.fit.albedo_d, 0.1 * kPi64, 0.01);
   // A weak highlight is enough not to be matte.
   EXPECT_FALSE(
       fit_analytic(material({.albedo_d = 0.3, .rho_0 = 0.2, .f_0 = 0.04, .alpha = 0.2}, options), options)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/math/math.h"
 #include "materials/acquisition.h"
 #include "materials/material.h"
 #include "separation/choose_model.h"
@@ -50,7 +51,7 @@ TEST(ResidualFit, BringsTheModelToTheTableItself) {
             from_half_difference({x.grid.theta_h(h), x.grid.theta_d(d), x.grid.phi_d(p)});
         if (!(pair.wo.z > 0.05 && pair.wi.z > 0.05)) continue;
         const std::size_t cell = x.grid.index(h, d, p), group = cell / std::size_t(x.grid.n_phi_d);
-        const double diffuse = double(pair.wo.z + pair.wi.z) / 3.14159265358979;
+        const double diffuse = double(pair.wo.z + pair.wi.z) / kPi64;
         double mean_albedo = 0;
         for (float c : result.tables.c_d) mean_albedo += double(c) / double(n);
         const double m = mean_albedo * diffuse + double(result.tables.rho_s[cell]);

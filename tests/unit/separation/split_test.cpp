@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/math/math.h"
 #include "separation/analytic_fit.h"
 #include "tests/support/chi_square.h"
 #include "tests/unit/separation/synthetic_cells.h"
 
 namespace spectrace {
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
 
 double objective(double x, double mean, double diffuse, double specular, double eta_d, double eta_s) {
   return eta_d * std::abs(x - diffuse) + eta_s * std::abs(mean - x - specular);
@@ -48,14 +46,14 @@ TEST(Split, LambertPlusSpecularGivesTheMeanBackWhereItIsBrightEnough) {
   const SeparationOptions options = small_grid();
   const AnalyticFit fit{.albedo_d = 0.3, .rho_0 = 0.5, .f_0 = 0.2, .alpha = 0.2};
   const CellTable table = test::synthetic_cells(options, [&](double h, double d, double i, double o) {
-    return fit.albedo_d / kPiD + analytic_specular(fit, h, d, i, o);
+    return fit.albedo_d / kPi64 + analytic_specular(fit, h, d, i, o);
   });
   const SplitResult split = split_lobes(table, fit, false, options);
   EXPECT_EQ(split.albedo_d, fit.albedo_d);
   EXPECT_LT(split.lambert_cost, 1e-6);  // float rounding of the table
   for (std::size_t i = 0; i < table.fitted(); ++i) {
     const double specular = double(split.rho_s[table.cell[i]]) / table.cos_sum(i);
-    EXPECT_NEAR((fit.albedo_d / kPiD + specular) / double(table.mean[i]), 1, 1e-5);
+    EXPECT_NEAR((fit.albedo_d / kPi64 + specular) / double(table.mean[i]), 1, 1e-5);
   }
 }
 
@@ -79,7 +77,7 @@ TEST(Split, APurelyDiffuseMaterialHasNoSpecularLobeAtAll) {
   const AnalyticFit fit{.albedo_d = 0.5, .rho_0 = 0, .f_0 = 0, .alpha = 0.5};
   // 1e-5 of ripple, as interpolation leaves it
   const CellTable table = test::synthetic_cells(
-      options, [](double h, double, double, double) { return 0.5 / kPiD * (1 + 1e-5 * std::sin(40 * h)); });
+      options, [](double h, double, double, double) { return 0.5 / kPi64 * (1 + 1e-5 * std::sin(40 * h)); });
   const SplitResult split = split_lobes(table, fit, false, options);
   EXPECT_TRUE(std::all_of(split.rho_s.begin(), split.rho_s.end(), [](float x) { return x == 0; }));
   EXPECT_EQ(split.albedo_d, 0.5);
