@@ -23,6 +23,7 @@ void add_separate(CLI::App& app, Action& chosen);
 void add_compare(CLI::App& app, Action& chosen);
 void add_inspect(CLI::App& app, Action& chosen);
 void add_acquire(CLI::App& app, Action& chosen);
+void add_reproduce(CLI::App& app, Action& chosen);  ///< the paper's tables and figures
 void add_sheet(CLI::App& app, Action& chosen);  ///< contact sheet of images
 
 }  // namespace spectrace::cli

@@ -43,7 +43,7 @@ struct Arguments {
   HalfDifferenceGrid grid;
   double tolerance = kDefaultTolerance;
   int quality = kDefaultQuality;
-  bool full = false, analytic = false;
+  bool full = false, analytic = false, reciprocal = false;
   int threads = 0;
 };
 
@@ -89,6 +89,7 @@ ExitCode separate_command(const Arguments& arguments) {
   const bool wants_residual = arguments.model == "residual" || arguments.model == "auto";
   options.residual_rank = wants_residual ? kDefaultResidualRank : 0;
   options.analytic = arguments.analytic;
+  options.reciprocal = arguments.reciprocal;
   options.threads = arguments.threads;
 
   SilentProgress progress;
@@ -161,6 +162,8 @@ void add_separate(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_flag("--analytic", arguments->analytic,
                     "also fit Lambert + GGX at each wavelength, the paper's comparison");
+  command->add_flag("--reciprocal", arguments->reciprocal,
+                    "of model residual: leave out in what the measurement is not reciprocal");
   command
       ->add_flag("--full", arguments->full,
                  "plain tables of single precision instead, for other programs to read")

@@ -18,10 +18,14 @@ Triple difference(Vec3 a, Vec3 b) { return {double(a.x) - b.x, double(a.y) - b.y
 double norm(const Triple& a) { return std::hypot(a.x, a.y, a.z); }
 Vec3 to_vec3(const Triple& a) { return {Float(a.x), Float(a.y), Float(a.z)}; }
 
-/// Azimuths that differ by π are the same pair with wi and wo swapped.
-double reduce_by_reciprocity(double phi) {
-  if (phi < 0) phi += kPi64;
-  return phi >= kPi64 ? 0 : phi;  // both ±π, and what rounding lifts to π, are 0
+/// Azimuths that differ by π are the same pair with wi and wo swapped. `phi` in [-π, π].
+void reduce_by_reciprocity(double phi, HalfDifference& out) {
+  out.is_swapped = phi < 0 || phi >= kPi64;
+  out.phi_d = phi < 0 ? phi + kPi64 : phi;
+  if (out.phi_d < kPi64) return;
+  // π itself is 0 of the swapped pair; what rounding lifts to π is 0 of the pair as it is.
+  out.phi_d = 0;
+  out.is_swapped = phi >= kPi64;
 }
 
 }  // namespace
@@ -40,7 +44,7 @@ HalfDifference to_half_difference(Vec3 wo, Vec3 wi) {
   const double cos_theta = h.z / h_norm, sin_theta = h_xy / h_norm;
   const double along_t = d.x * cos_theta * cos_phi + d.y * cos_theta * sin_phi - d.z * sin_theta;
   const double along_b = -d.x * sin_phi + d.y * cos_phi;
-  out.phi_d = reduce_by_reciprocity(std::atan2(along_b, along_t));
+  reduce_by_reciprocity(std::atan2(along_b, along_t), out);
   return out;
 }
 

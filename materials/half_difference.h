@@ -9,6 +9,7 @@ namespace spectrace {
 /// [rad]. theta_h, theta_d in [0, π/2]; phi_d in [0, π), reduced by reciprocity (swapping wi and wo adds π).
 struct HalfDifference {
   double theta_h = 0, theta_d = 0, phi_d = 0;
+  bool is_swapped = false;  ///< π was taken off phi_d: these angles are of the pair with wi and wo exchanged
 };
 
 struct DirectionPair {

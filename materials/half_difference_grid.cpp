@@ -60,6 +60,8 @@ GridPoint HalfDifferenceGrid::locate(const HalfDifference& angles) const {
   const auto fraction_p = static_cast<float>(k - p0);
 
   GridPoint point;
+  const float sign = angles.is_swapped ? -1 : 1;
+  point.odd_sign = {sign, p1 > p0 ? sign : -sign};
   const std::array<std::uint32_t, 4> angular{h.lower * n_theta_d + d.lower, h.lower * n_theta_d + d.upper,
                                              h.upper * n_theta_d + d.lower, h.upper * n_theta_d + d.upper};
   point.angular = angular;

@@ -9,7 +9,12 @@
 
 #include "materials/analytic_brdf.h"
 #include "materials/bsdf.h"
+#include "materials/conductor.h"
+#include "materials/diffractive.h"
+#include "materials/glossy.h"
+#include "materials/lambert.h"
 #include "materials/measured_brdf.h"
+#include "materials/plain_table_brdf.h"
 #include "materials/separated_brdf.h"
 #include "materials/tabulated_brdf.h"
 
@@ -17,7 +22,9 @@ namespace spectrace {
 
 class PairedBrdf {
  public:
-  using Values = std::variant<MeasuredBrdf, TabulatedBrdf, SeparatedBrdf, AnalyticBrdf>;
+  /// Measured, in any description; and what the virtual goniophotometer measures, itself.
+  using Values = std::variant<MeasuredBrdf, TabulatedBrdf, PlainTableBrdf, SeparatedBrdf, AnalyticBrdf,
+                              Lambert, RoughConductor, Glossy, Diffractive>;
   /// `directions` reaches every direction (a separated material does: it always draws some by the cosine), so
   /// the estimate stays unbiased whatever `values` is. A path is the same for all `values` as long as Russian
   /// roulette, which follows the throughput, is off.

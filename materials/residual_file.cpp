@@ -43,15 +43,23 @@ ResidualTable read_residual(const TensorReader& reader, const HalfDifferenceGrid
   residual.rank = reader.rank("residual_basis", kMaxResidualRank);
   residual.basis = reader.finite("residual_basis", std::array{residual.rank, axis_size});
   residual.step = reader.non_negative("residual_step", std::array<std::size_t, 1>{1})[0];
-  residual.ratio = from_planes(reader.bytes("residual_ratio", cells_of(grid, residual.rank)), residual.rank);
+  const auto terms = [&](const char* field) {
+    return from_planes(reader.bytes(field, cells_of(grid, residual.rank)), residual.rank);
+  };
+  residual.ratio = terms("residual_ratio");
+  if (reader.has("residual_odd")) residual.odd = terms("residual_odd");
   return residual;
 }
 
 void add_residual(const ResidualTable& residual, const HalfDifferenceGrid& grid, TensorFile& file) {
   file.add(Tensor::from_floats("residual_basis", {residual.rank, residual.axis_size}, residual.basis));
   file.add(Tensor::from_floats("residual_step", {1}, std::array{residual.step}));
-  const std::vector<std::uint8_t> planes = to_planes(residual.ratio, residual.rank);
-  file.add(pack("residual_ratio", std::span<const std::uint8_t>(planes), cells_of(grid, residual.rank)));
+  const auto add = [&](const char* field, const std::vector<std::int8_t>& terms) {
+    const std::vector<std::uint8_t> planes = to_planes(terms, residual.rank);
+    file.add(pack(field, std::span<const std::uint8_t>(planes), cells_of(grid, residual.rank)));
+  };
+  add("residual_ratio", residual.ratio);
+  if (!residual.odd.empty()) add("residual_odd", residual.odd);
 }
 
 }  // namespace spectrace

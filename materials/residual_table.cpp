@@ -5,11 +5,19 @@
 
 namespace spectrace {
 
-SampledSpectrum ResidualTable::at(const GridPoint& point, const SpectralAxis::Lookup& lookup) const {
+SampledSpectrum ResidualTable::at(const GridPoint& point, Float cos_share_o,
+                                  const SpectralAxis::Lookup& lookup) const {
   std::array<float, kMaxResidualRank> coefficient{};
-  for (std::size_t i = 0; i < point.cell.size(); ++i) {
-    const std::int8_t* const terms = &ratio[point.cell[i] * rank];
-    for (std::size_t k = 0; k < rank; ++k) coefficient[k] += point.cell_weight[i] * float(terms[k]);
+  const auto add = [&](const std::vector<std::int8_t>& terms, std::size_t i, float weight) {
+    const std::int8_t* const term = &terms[point.cell[i] * rank];
+    for (std::size_t k = 0; k < rank; ++k) coefficient[k] += weight * float(term[k]);
+  };
+  for (std::size_t i = 0; i < point.cell.size(); ++i) add(ratio, i, point.cell_weight[i]);
+  if (!odd.empty()) {
+    const auto factor = static_cast<float>(2 * cos_share_o);
+    for (std::size_t i = 0; i < point.cell.size(); ++i) {
+      add(odd, i, factor * point.odd_sign[i % 2] * point.cell_weight[i]);
+    }
   }
   SampledSpectrum sum;
   for (std::size_t k = 0; k < rank; ++k) {

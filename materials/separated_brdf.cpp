@@ -70,7 +70,8 @@ struct SeparatedBrdf::Data {
     SampledSpectrum sum = albedo * shape.diffuse;
     if (shape.specular > 0) sum += spectral_factor(tables, model, shape.point, lookup) * shape.specular;
     if (model == SeparationModel::kResidual && !tables.residual.is_empty()) {
-      sum += tables.residual.at(shape.point, lookup) * (mean_albedo_d * shape.diffuse + shape.specular);
+      sum += tables.residual.at(shape.point, 1 - shape.to_value_cos, lookup) *
+             (mean_albedo_d * shape.diffuse + shape.specular);
       for (int lane = 0; lane < kLanes; ++lane) sum[lane] = std::max(sum[lane], Float(0));
     }
     return sum;

@@ -10,7 +10,7 @@
 
 namespace spectrace {
 
-/// Cheap to copy. Reciprocal by construction.
+/// Cheap to copy. Reciprocal by construction, but for the odd terms of a residual (ResidualTable::odd).
 class SeparatedBrdf {
  public:
   SeparatedBrdf(SeparatedSource source, SeparationModel model);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "materials/tabulated_brdf.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
@@ -10,7 +11,8 @@
 namespace spectrace {
 
 TabulatedBrdf::TabulatedBrdf(std::shared_ptr<const HalfDifferenceTable> table) : table_(std::move(table)) {
-  SPECTRACE_CHECK(table_ != nullptr && table_->q.size() == table_->grid.size() * table_->axis.size());
+  SPECTRACE_CHECK(table_ != nullptr && table_->q.size() == table_->grid.size() * table_->axis.size() &&
+                  (table_->odd.empty() || table_->odd.size() == table_->q.size()));
 }
 
 BsdfValue TabulatedBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
@@ -18,11 +20,18 @@ BsdfValue TabulatedBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) cons
   const SpectralAxis::Lookup lookup = table_->axis.lookup(at.lambda);
   const GridPoint point = table_->grid.locate(to_half_difference(wo, wi));
   BsdfValue result{.value_cos = {}, .pdf = wi.z * kInvPi};
-  for (std::size_t i = 0; i < point.cell.size(); ++i) {
-    result.value_cos +=
-        lookup.apply(&table_->q[point.cell[i] * table_->axis.size()]) * Float(point.cell_weight[i]);
-  }
+  const auto at_cell = [&](const std::vector<float>& values, std::size_t i) {
+    return lookup.apply(&values[point.cell[i] * table_->axis.size()]) * Float(point.cell_weight[i]);
+  };
+  for (std::size_t i = 0; i < point.cell.size(); ++i) result.value_cos += at_cell(table_->q, i);
   result.value_cos = result.value_cos * (wi.z / (wi.z + wo.z));
+  if (!table_->odd.empty()) {
+    for (std::size_t i = 0; i < point.cell.size(); ++i) {
+      result.value_cos += at_cell(table_->odd, i) * Float(point.odd_sign[i % 2]);
+    }
+    for (int lane = 0; lane < kLanes; ++lane)
+      result.value_cos[lane] = std::max(result.value_cos[lane], Float(0));
+  }
   return result;
 }
 

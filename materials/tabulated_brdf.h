@@ -18,6 +18,9 @@ struct HalfDifferenceTable {
   SpectralAxis axis;
   /// [theta_h][theta_d][phi_d][axis]: f · (cosθi + cosθo) >= 0 [1/sr] (ADR 0005).
   std::vector<float> q;
+  /// Likewise, or empty: (f(wo, wi) - f(wi, wo)) cosθi cosθo / (cosθi + cosθo), what the average of both
+  /// orders loses of f cosθi. Bounded, 0 at the horizon, and odd in the exchange of the directions.
+  std::vector<float> odd{};
 };
 
 /// The reference of the paper's figures ("tabulated"). Drawn by the cosine: it is compared with others on the

@@ -10,14 +10,15 @@ namespace {
 
 /// Below the horizon: the nearest node in phi_d, which is never far, because at phi_d = 90 degrees both
 /// directions of a pair stand at cosθh cosθd > 0.
-void fill_below_horizon(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+void fill_below_horizon(const HalfDifferenceGrid& grid, float wrap_sign, std::vector<float>& table) {
   const int n = grid.n_phi_d;
   for (std::size_t group = 0; group < grid.angular_size(); ++group) {
     float* row = &table[group * n];
     std::vector<float> filled(row, row + n);
     for (int p = 0; p < n; ++p) {
       for (int step = 1; std::isnan(filled[p]) && step <= n / 2; ++step) {
-        const float before = row[(p + n - step) % n], after = row[(p + step) % n];
+        const float before = row[(p + n - step) % n] * (p < step ? wrap_sign : 1);
+        const float after = row[(p + step) % n] * (p + step >= n ? wrap_sign : 1);
         if (std::isnan(before) || std::isnan(after)) {
           filled[p] = std::isnan(before) ? after : before;
         } else {
@@ -67,9 +68,19 @@ void average_poles(const HalfDifferenceGrid& grid, std::vector<float>& table) {
 }  // namespace
 
 void fill_unmeasured(const HalfDifferenceGrid& grid, std::vector<float>& table) {
-  fill_below_horizon(grid, table);
+  fill_below_horizon(grid, 1, table);
   fill_empty_rows(grid, table);
   average_poles(grid, table);
+}
+
+void fill_unmeasured_odd(const HalfDifferenceGrid& grid, std::vector<float>& table) {
+  fill_below_horizon(grid, -1, table);
+  fill_empty_rows(grid, table);
+  for (int h = 0; h < grid.n_theta_h; ++h) {
+    for (int d = 0; d < (h == 0 ? grid.n_theta_d : 1); ++d) {
+      std::fill_n(table.begin() + std::ptrdiff_t(grid.index(h, d, 0)), grid.n_phi_d, 0.0F);
+    }
+  }
 }
 
 }  // namespace spectrace

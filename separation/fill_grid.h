@@ -16,5 +16,8 @@ inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 /// nearest neighbour in phi_d (the mean of two), else in theta_h, else 0; the poles become one value each, so
 /// that lookups are continuous.
 void fill_unmeasured(const HalfDifferenceGrid& grid, std::vector<float>& table);
+/// The same for what is odd in the exchange of the directions: beyond either end of phi_d it goes on with the
+/// other sign, and at the poles, where the exchange changes nothing, it is 0.
+void fill_unmeasured_odd(const HalfDifferenceGrid& grid, std::vector<float>& table);
 
 }  // namespace spectrace

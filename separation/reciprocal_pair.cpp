@@ -38,7 +38,14 @@ ReciprocalPair locate_pair(const MeasuredBrdf& brdf, const DirectionPair& direct
       pair.scale[1 - i] = 0;
     }
   }
+  pair.both = orders[0] && orders[1] && pair.scale[0] == 1 && pair.scale[1] == 1;
   return pair;
+}
+
+std::array<double, 2> ReciprocalPair::odd_scale(const DirectionPair& directions) const {
+  if (!both) return {0, 0};
+  const double share_i = double(directions.wi.z) / (double(directions.wi.z) + double(directions.wo.z));
+  return {1 - share_i, -share_i};
 }
 
 }  // namespace spectrace

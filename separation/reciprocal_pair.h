@@ -17,6 +17,11 @@ struct ReciprocalPair {
   bool measured = false;          ///< in at least one order
   bool extrapolated = false;      ///< beyond the last measured elevation in every order there is
   bool any = false;               ///< at least one order holds a value
+  bool both = false;              ///< both orders do, and q is the sum of both
+
+  /// Weights of the footprints whose sum is what q loses of f cosθi: (f(wo, wi) - f(wi, wo)) cosθi cosθo /
+  /// (cosθi + cosθo). 0 where one order stands for both.
+  [[nodiscard]] std::array<double, 2> odd_scale(const DirectionPair& directions) const;
 };
 
 ReciprocalPair locate_pair(const MeasuredBrdf& measured, const DirectionPair& directions);

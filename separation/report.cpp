@@ -58,6 +58,7 @@ void write_options(JsonWriter& json, const SeparationOptions& options) {
   json.member("starts", options.starts);
   json.member("diffraction_prior", options.diffraction_prior);
   json.member("residual_rank", options.residual_rank);
+  json.member("reciprocal", options.reciprocal);
   json.end_object();
 }
 
@@ -105,8 +106,11 @@ std::string SeparationReport::full() const {
   line("step 1", fmt::format("cost {:.6g} -> {:.6g} in {} iterations, gradient {:.1e} per cell",
                              step1_initial_cost, step1_final_cost, step1_iterations, step1_gradient_max));
   line("diffuse colour",
-       fmt::format("mean {:.4f}, {}", albedo_d,
-                   dark_colour ? "read where the specular lobe is weakest" : "of eqs. 7 and 18"));
+       fmt::format("mean {:.4f}, {}{}", albedo_d,
+                   dark_colour ? "read where the specular lobe is weakest" : "of eqs. 7 and 18",
+                   albedo_scale < 1 ? fmt::format(", lowered to {:.1f} %: the measurement supports no more",
+                                                  100 * albedo_scale)
+                                    : std::string()));
   line("step 2", fmt::format("cost {:.6g}; {:.2f} % of the reflected light is specular", step2_cost,
                              100 * specular_share));
   line("diffuse lobe", fmt::format("{}; an exact Lambert lobe has {:.2f} % of the reflected light too much",
@@ -164,6 +168,7 @@ std::string SeparationReport::json(bool with_timings) const {
   json.member("step1_gradient_max", step1_gradient_max);
   json.member("step1_iterations", step1_iterations);
   json.member("dark_colour", dark_colour);
+  json.member("albedo_scale", albedo_scale);
   json.member("albedo_d_mean", albedo_d);
   json.member("step2_cost", step2_cost);
   json.member("specular_share", specular_share);

@@ -4,8 +4,10 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -36,41 +38,57 @@ class Residuals {
         n_(tables.axis.size()),
         mean_albedo_(std::accumulate(tables.c_d.begin(), tables.c_d.end(), 0.0) / double(n_)) {}
 
-  /// M; 0 where the node has no value or the model is black there (`row` is not written then). Else `row`
-  /// gets the ratios.
-  double at(int h, int d, int p, Eigen::VectorXd& row) const {
+  /// The ratios at a node, and M; 0, and nothing written, where the node has no value or the model is black.
+  /// `odd`: of what changes its sign with the exchange of the directions, over 2 M cosθi cosθo /
+  /// (cosθi + cosθo)², which goes with it to 0 at the horizon.
+  struct Node {
+    double mean = 0;
+    double odd_factor = 0;  ///< what `odd` was divided by, over M; 0 where there is no such part
+  };
+  Node at(int h, int d, int p, Eigen::VectorXd& even, Eigen::VectorXd& odd) const {
     const HalfDifferenceGrid& grid = tables_.grid;
     const DirectionPair directions = from_half_difference({grid.theta_h(h), grid.theta_d(d), grid.phi_d(p)});
-    if (!(directions.wo.z > 0 && directions.wi.z > 0)) return 0;
+    if (!(directions.wo.z > 0 && directions.wi.z > 0)) return {};
     const ReciprocalPair pair = locate_pair(measured_, directions);
-    if (!pair.any) return 0;
+    if (!pair.any) return {};
     const std::size_t cell = grid.index(h, d, p), group = cell / std::size_t(grid.n_phi_d);
     const double shape = tables_.diffuse_shape.empty() ? 1.0 : double(tables_.diffuse_shape[cell]);
-    const double diffuse = shape * double(directions.wo.z + directions.wi.z) / kPi64;
+    const double cosines = double(directions.wo.z) + double(directions.wi.z);
+    const double diffuse = shape * cosines / kPi64;
     const double specular = double(tables_.rho_s[cell]);
-    const double mean = mean_albedo_ * diffuse + specular;
-    if (!(mean > 0)) return 0;
+    Node node{.mean = mean_albedo_ * diffuse + specular};
+    if (!(node.mean > 0)) return {};
 
-    row.setZero();
-    for (std::size_t order = 0; order < 2; ++order) {
-      const MeasuredBrdf::Footprint& footprint = pair.footprint[order];
-      for (int i = 0; i < footprint.count; ++i) {
-        const double weight = pair.scale[order] * double(footprint.weight[i]) / mean;
-        const float* const spectrum = measured_.spectrum(footprint.row[i]);
-        for (std::size_t k = 0; k < n_; ++k) row[Eigen::Index(k)] += weight * double(spectrum[k]);
-      }
-    }
+    gather(pair, {pair.scale[0] / node.mean, pair.scale[1] / node.mean}, even);
     const float* const s_d = &tables_.s_diffraction[group * n_];
     for (std::size_t k = 0; k < n_; ++k) {
-      row[Eigen::Index(k)] -= (double(tables_.c_d[k]) * diffuse + specular * double(s_d[k])) / mean;
+      even[Eigen::Index(k)] -= (double(tables_.c_d[k]) * diffuse + specular * double(s_d[k])) / node.mean;
     }
-    return mean;
+    odd.setZero();
+    if (pair.both) {
+      node.odd_factor = 2 * double(directions.wo.z) * double(directions.wi.z) / (cosines * cosines);
+      const std::array<double, 2> scale = pair.odd_scale(directions);
+      gather(pair, {scale[0] / (node.odd_factor * node.mean), scale[1] / (node.odd_factor * node.mean)}, odd);
+    }
+    return node;
   }
 
   [[nodiscard]] std::size_t axis_size() const { return n_; }
   [[nodiscard]] const HalfDifferenceGrid& grid() const { return tables_.grid; }
 
  private:
+  void gather(const ReciprocalPair& pair, std::array<double, 2> scale, Eigen::VectorXd& row) const {
+    row.setZero();
+    for (std::size_t order = 0; order < 2; ++order) {
+      const MeasuredBrdf::Footprint& footprint = pair.footprint[order];
+      for (int i = 0; i < footprint.count; ++i) {
+        const double weight = scale[order] * double(footprint.weight[i]);
+        const float* const spectrum = measured_.spectrum(footprint.row[i]);
+        for (std::size_t k = 0; k < n_; ++k) row[Eigen::Index(k)] += weight * double(spectrum[k]);
+      }
+    }
+  }
+
   const MeasuredBrdf& measured_;
   const SeparatedTables& tables_;
   std::size_t n_;
@@ -78,21 +96,27 @@ class Residuals {
 };
 
 /// Second moments of the residual, weighted by its share of a picture's squared error.
-Eigen::MatrixXd second_moments(const Residuals& residuals) {
+Eigen::MatrixXd second_moments(const Residuals& residuals, bool with_odd) {
   const HalfDifferenceGrid& grid = residuals.grid();
   const auto n = Eigen::Index(residuals.axis_size());
   std::vector<Eigen::MatrixXd> slices(std::size_t(grid.n_theta_h), Eigen::MatrixXd::Zero(n, n));
   parallel_chunks(slices.size(), [&](std::size_t h) {
     const double step_h = grid.theta_h(double(h) + 0.5) - grid.theta_h(std::max(double(h) - 0.5, 0.0));
-    Eigen::VectorXd row(n);
+    Eigen::VectorXd even(n), odd(n);
     for (std::size_t i = h % kScoutStride; i < std::size_t(grid.n_theta_d) * grid.n_phi_d;
          i += kScoutStride) {
       const int d = int(i / std::size_t(grid.n_phi_d)), p = int(i % std::size_t(grid.n_phi_d));
-      const double mean = residuals.at(int(h), d, p, row);
-      if (!(mean > 0)) continue;
+      const Residuals::Node node = residuals.at(int(h), d, p, even, odd);
+      if (!(node.mean > 0)) continue;
       const double solid_angle =
           std::sin(grid.theta_h(double(h))) * step_h * std::sin(grid.theta_d(d)) * std::cos(grid.theta_d(d));
-      slices[h].selfadjointView<Eigen::Lower>().rankUpdate(row, solid_angle * mean * mean);
+      const double weight = solid_angle * node.mean * node.mean;
+      slices[h].selfadjointView<Eigen::Lower>().rankUpdate(even, weight);
+      if (with_odd && node.odd_factor > 0) {
+        // At equal cosines a ratio of either part adds the same: there the factor is 1/2.
+        const double factor = 2 * node.odd_factor;
+        slices[h].selfadjointView<Eigen::Lower>().rankUpdate(odd, weight * factor * factor);
+      }
     }
   });
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
@@ -112,48 +136,65 @@ Eigen::MatrixXd components(const Eigen::MatrixXd& moments, std::size_t rank, dou
   return eigen.eigenvectors().rightCols(count).rowwise().reverse().transpose() * std::sqrt(double(n));
 }
 
+/// [cell][plane] in steps of kStep; counts what a byte does not reach.
+std::vector<std::int8_t> encoded(std::span<const std::vector<float>> planes, std::size_t& clamped) {
+  std::vector<std::int8_t> codes(planes.front().size() * planes.size());
+  for (std::size_t cell = 0; cell < planes.front().size(); ++cell) {
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      const float code = std::round(planes[k][cell] / kStep);
+      clamped += std::abs(code) > 127 ? 1 : 0;
+      codes[cell * planes.size() + k] = static_cast<std::int8_t>(std::clamp(code, -127.0F, 127.0F));
+    }
+  }
+  return codes;
+}
+
 }  // namespace
 
-ResidualTable fit_residual(const MeasuredBrdf& measured, const SeparatedTables& tables, std::size_t rank,
-                           ResidualReport& report) {
-  SPECTRACE_CHECK(rank >= 1 && rank <= kMaxResidualRank);
+ResidualTable fit_residual(const MeasuredBrdf& measured, const SeparatedTables& tables,
+                           const SeparationOptions& options, ResidualReport& report) {
+  SPECTRACE_CHECK(options.residual_rank >= 1 && std::size_t(options.residual_rank) <= kMaxResidualRank);
   const Residuals residuals(measured, tables);
   const HalfDifferenceGrid& grid = tables.grid;
-  const Eigen::MatrixXd basis = components(second_moments(residuals), rank, report.explained);
+  const bool with_odd = !options.reciprocal;
+  const Eigen::MatrixXd basis =
+      components(second_moments(residuals, with_odd), std::size_t(options.residual_rank), report.explained);
   const auto count = std::size_t(basis.rows());
   if (count == 0) return {};
 
-  std::vector<std::vector<float>> planes(count, std::vector<float>(grid.size(), kNoValue));
+  // The terms of the even part, then of the odd one.
+  std::vector<std::vector<float>> planes(with_odd ? 2 * count : count,
+                                         std::vector<float>(grid.size(), kNoValue));
   const Eigen::MatrixXd project = basis / double(residuals.axis_size());
   parallel_chunks(std::size_t(grid.n_theta_h), [&](std::size_t h) {
-    Eigen::VectorXd row(Eigen::Index(residuals.axis_size())), terms(basis.rows());
+    Eigen::VectorXd even(Eigen::Index(residuals.axis_size())), odd(even.size()), terms(basis.rows());
+    const auto store = [&](const Eigen::VectorXd& row, std::size_t cell, std::size_t first_plane) {
+      terms.noalias() = project * row;
+      for (std::size_t k = 0; k < count; ++k) {
+        planes[first_plane + k][cell] = static_cast<float>(terms[Eigen::Index(k)]);
+      }
+    };
     for (int d = 0; d < grid.n_theta_d; ++d) {
       for (int p = 0; p < grid.n_phi_d; ++p) {
-        if (!(residuals.at(int(h), d, p, row) > 0)) continue;
-        terms.noalias() = project * row;
-        for (std::size_t k = 0; k < count; ++k) {
-          planes[k][grid.index(int(h), d, p)] = static_cast<float>(terms[Eigen::Index(k)]);
-        }
+        if (!(residuals.at(int(h), d, p, even, odd).mean > 0)) continue;
+        store(even, grid.index(int(h), d, p), 0);
+        if (with_odd) store(odd, grid.index(int(h), d, p), count);
       }
     }
   });
-  parallel_chunks(count, [&](std::size_t k) { fill_unmeasured(grid, planes[k]); });
+  parallel_chunks(planes.size(), [&](std::size_t k) {
+    k < count ? fill_unmeasured(grid, planes[k]) : fill_unmeasured_odd(grid, planes[k]);
+  });
 
   ResidualTable table{
-      .basis = {}, .ratio = {}, .step = kStep, .rank = count, .axis_size = residuals.axis_size()};
+      .basis = {}, .ratio = {}, .odd = {}, .step = kStep, .rank = count, .axis_size = residuals.axis_size()};
   for (Eigen::Index k = 0; k < basis.rows(); ++k) {
     for (Eigen::Index i = 0; i < basis.cols(); ++i) table.basis.push_back(static_cast<float>(basis(k, i)));
   }
-  table.ratio.resize(grid.size() * count);
   std::size_t clamped = 0;
-  for (std::size_t cell = 0; cell < grid.size(); ++cell) {
-    for (std::size_t k = 0; k < count; ++k) {
-      const float code = std::round(planes[k][cell] / kStep);
-      clamped += std::abs(code) > 127 ? 1 : 0;
-      table.ratio[cell * count + k] = static_cast<std::int8_t>(std::clamp(code, -127.0F, 127.0F));
-    }
-  }
-  report.clamped_share = double(clamped) / double(table.ratio.size());
+  table.ratio = encoded(std::span(planes).first(count), clamped);
+  if (with_odd) table.odd = encoded(std::span(planes).subspan(count), clamped);
+  report.clamped_share = double(clamped) / double(table.ratio.size() + table.odd.size());
   return table;
 }
 

@@ -4,6 +4,7 @@
 
 #include "materials/measured_brdf.h"
 #include "materials/separated_tables.h"
+#include "separation/separate.h"
 
 namespace spectrace {
 
@@ -13,10 +14,11 @@ struct ResidualReport {
   double clamped_share = 0;  ///< of all ratios: beyond what a byte times the step holds
 };
 
-/// Principal components of (X - diffraction model) / M over the axis, M the model's mean at each node; at
-/// most `rank` of them, in [1, kMaxResidualRank], fewer where fewer explain all. Fits to every node that has
-/// a value. The same for any number of threads; runs on those of with_threads().
-ResidualTable fit_residual(const MeasuredBrdf& measured, const SeparatedTables& tables, std::size_t rank,
-                           ResidualReport& report);
+/// Principal components of (X - diffraction model) / M over the axis, M the model's mean at each node, of
+/// what is even and, unless `options.reciprocal`, of what is odd in the exchange of the directions; at most
+/// `options.residual_rank` of them, in [1, kMaxResidualRank], fewer where fewer explain all. Fits to every
+/// node that has a value. The same for any number of threads; runs on those of with_threads().
+ResidualTable fit_residual(const MeasuredBrdf& measured, const SeparatedTables& tables,
+                           const SeparationOptions& options, ResidualReport& report);
 
 }  // namespace spectrace

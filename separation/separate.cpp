@@ -97,6 +97,23 @@ std::vector<float> dark_colour(const MeasuredBrdf& measured, const CellTable& ta
   return std::move(*s_d);
 }
 
+// What stays of the veto for the level alone: the most that a Lambert lobe of the true colour had too much.
+constexpr double kSupportedExcess = 0.003;
+
+/// The largest alpha_d up to `albedo` that the measurement supports. Felts and matte paints are darker than
+/// any Lambert lobe off the grazing half vectors; what such a lobe has too much no specular table can take
+/// back.
+double supported_albedo(const CellTable& table, double albedo) {
+  if (lambert_excess(table, albedo) <= kSupportedExcess) return albedo;
+  constexpr int kBisections = 12;  // to 0.03 %
+  double lower = 0, upper = albedo;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = (lower + upper) / 2;
+    (lambert_excess(table, middle) > kSupportedExcess ? upper : lower) = middle;
+  }
+  return lower;
+}
+
 void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progress& progress,
          SeparationResult& result) {
   SeparationReport& report = result.report;
@@ -123,7 +140,16 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
 
   const AnalyticFit achromatic = analytic.fit;
   std::vector<float> s_d;
-  report.seconds_step1 += seconds([&] { s_d = dark_colour(measured, table, analytic, options); });
+  report.seconds_step1 += seconds([&] {
+    s_d = dark_colour(measured, table, analytic, options);
+    const bool is_bounded =
+        options.colour == DiffuseColour::kDark && options.diffuse == DiffuseForm::kLambert;
+    if (is_bounded && !analytic.matte) {
+      const double wanted = analytic.fit.albedo_d;
+      analytic.fit.albedo_d = supported_albedo(table, wanted);
+      report.albedo_scale = wanted > 0 ? analytic.fit.albedo_d / wanted : 1;
+    }
+  });
   report.dark_colour = !s_d.empty();
 
   SplitResult split;
@@ -149,10 +175,8 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
 
   progress.update("residual", 0, 1);
   ResidualReport residual;
-  report.seconds_residual = seconds([&] {
-    result.tables.residual =
-        fit_residual(measured, result.tables, std::size_t(options.residual_rank), residual);
-  });
+  report.seconds_residual =
+      seconds([&] { result.tables.residual = fit_residual(measured, result.tables, options, residual); });
   report.residual_explained = residual.explained;
   report.residual_clamped_share = residual.clamped_share;
 }

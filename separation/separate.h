@@ -68,6 +68,9 @@ struct SeparationOptions {
   double diffraction_prior = 0.01;
   /// Terms of the model kResidual, at most kMaxResidualRank; 0: not fitted, which saves its time.
   int residual_rank = 0;
+  /// The residual leaves out what the measurement has in one order of a pair of directions and not in the
+  /// other; for methods that need reciprocal materials.
+  bool reciprocal = false;
   bool analytic = false;  ///< also fit the model of sec. 5.3, Lambert + GGX at each wavelength
   int threads = 0;        ///< 0 = all cores
 
@@ -87,6 +90,7 @@ struct SeparationReport {
   double step1_gradient_max = 0;  ///< infinity norm of the projected gradient at the solution
   int step1_iterations = 0;
   bool dark_colour = false;  ///< c_d was read where the specular lobe is weakest
+  double albedo_scale = 1;   ///< what alpha_d was lowered by, to what the measurement supports
   double albedo_d = 0;       ///< mean of c_d over the axis: what steps 2 and 3 took for alpha_d
   double step2_cost = 0;     ///< eq. 16
   /// Of the light reflected under uniform light, averaged over the measured directions: how much an exact

@@ -11,4 +11,11 @@ namespace spectrace {
 /// for the paper's grid at 195 wavelengths. Of `options` the grid and the threads count.
 HalfDifferenceTable tabulate(const MeasuredBrdf& measured, const SeparationOptions& options);
 
+/// The same with what is odd in the exchange of the directions: twice the memory, and no longer reciprocal.
+HalfDifferenceTable tabulate_oriented(const MeasuredBrdf& measured, const SeparationOptions& options);
+
+/// The plain table for comparison (materials/plain_table_brdf.h): f in one order of the pair, NaN where the
+/// measurement says nothing.
+HalfDifferenceTable tabulate_plain(const MeasuredBrdf& measured, const SeparationOptions& options);
+
 }  // namespace spectrace

@@ -19,6 +19,7 @@ namespace spectrace {
 namespace {
 
 constexpr int kMaxChannels = 1024;
+constexpr const char* kJpegQuality = "jpeg:90";  // no difference to be seen at arm's length
 
 std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) {
   OIIO::ImageSpec config;
@@ -124,24 +125,41 @@ Metadata read_metadata(const std::filesystem::path& file) {
   return metadata;
 }
 
-void write_png(const std::filesystem::path& file, const Image& image, std::string_view layer,
-               double exposure) {
-  const Image rgb = image.select(rgb_channels(layer), file.string());
-  const std::vector<unsigned char> pixels = encode_8bit(rgb, exposure);
+namespace {
 
-  // Into memory first: what a full disk does is then told by our own writing.
+/// 8-bit sRGB in OpenImageIO's `format`, in memory: what a full disk does is then told by our own writing.
+std::vector<unsigned char> encode(const std::string& format, const Image& image, std::string_view layer,
+                                  double exposure, const std::string& file) {
+  const Image rgb = image.select(rgb_channels(layer), file);
+  const std::vector<unsigned char> pixels = encode_8bit(rgb, exposure);
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput memory(encoded);
   OIIO::ImageSpec spec(rgb.width, rgb.height, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  const auto out = OIIO::ImageOutput::create("png", &memory);
-  const bool written = out && out->open("memory.png", spec) &&
+  if (format == "jpeg") spec.attribute("Compression", kJpegQuality);
+  const auto out = OIIO::ImageOutput::create(format, &memory);
+  const bool written = out && out->open("memory." + format, spec) &&
                        out->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && out->close();
   if (!written) {
-    throw InputError(file.string(), "",
-                     fmt::format("cannot encode PNG: {}", out ? out->geterror() : OIIO::geterror()));
+    throw InputError(file, "",
+                     fmt::format("cannot encode {}: {}", format, out ? out->geterror() : OIIO::geterror()));
   }
+  return encoded;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, const Image& image, std::string_view layer,
+               double exposure) {
+  const std::vector<unsigned char> encoded = encode("png", image, layer, exposure, file.string());
   write_file_atomically(file, std::as_bytes(std::span(encoded)));
+}
+
+std::string jpeg_data_uri(const Image& image, std::string_view layer, double exposure) {
+  const std::vector<unsigned char> encoded = encode("jpeg", image, layer, exposure, "page");
+  const std::string_view bytes(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+  return "data:image/jpeg;base64," +
+         OIIO::Strutil::base64_encode(OIIO::string_view(bytes.data(), bytes.size()));
 }
 
 }  // namespace spectrace

@@ -181,7 +181,7 @@ void add_separated(std::vector<BsdfCase>& cases) {
     }
     cases.push_back({.name = "Separated_" + name_of(model) + "_of_pearlescent",
                      .make = [model] { return SeparatedBrdf(separate_for_test("pearlescent"), model); },
-                     .is_reciprocal = true,
+                     .is_reciprocal = model != SeparationModel::kResidual,  // the measurement is not
                      .conserves_energy = false,
                      .specular_step = kSeparatedStep});
   }
@@ -189,31 +189,37 @@ void add_separated(std::vector<BsdfCase>& cases) {
 
 /// The other forms that separation makes of a measurement.
 void add_forms_of_pearlescent(std::vector<BsdfCase>& cases) {
-  const auto add = [&cases](std::string name, std::function<std::optional<Material>()> make) {
+  const auto add = [&cases](std::string name, std::function<std::optional<Material>()> make,
+                            bool is_reciprocal = true) {
     cases.push_back({.name = std::move(name),
                      .make = std::move(make),
-                     .is_reciprocal = true,
+                     .is_reciprocal = is_reciprocal,
                      .conserves_energy = false,
                      .specular_step = kSeparatedStep});
   };
   for (const SeparationModel model : {SeparationModel::kDiffraction, SeparationModel::kResidual}) {
-    add("Compact_" + name_of(model), [model] {
-      return SeparatedBrdf(std::make_shared<const CompactTables>(
-                               compact(*separate_for_test("pearlescent"), kDefaultQuality).tables),
-                           model);
-    });
+    add(
+        "Compact_" + name_of(model),
+        [model] {
+          return SeparatedBrdf(std::make_shared<const CompactTables>(
+                                   compact(*separate_for_test("pearlescent"), kDefaultQuality).tables),
+                               model);
+        },
+        model != SeparationModel::kResidual);
   }
   add("AnalyticPerWavelength", [] {
     const auto tables = separate_for_test("pearlescent");
     return AnalyticBrdf(tables->axis, tables->analytic);
   });
-  const auto table_x = [] {
+  const auto table = [](const auto& make) {
     SeparationOptions options;
     options.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
     return TabulatedBrdf(std::make_shared<const HalfDifferenceTable>(
-        tabulate(MeasuredBrdf(acquire_for_test(built_in("pearlescent"))), options)));
+        make(MeasuredBrdf(acquire_for_test(built_in("pearlescent"))), options)));
   };
-  add("TableX", table_x);
+  add("TableX", [table] { return table(tabulate); });
+  add(
+      "OrientedTable", [table] { return table(tabulate_oriented); }, false);
   cases.push_back({.name = "PairedMeasurement", .make = [] {
                      return PairedBrdf(
                          MeasuredBrdf(acquire_for_test(built_in("pearlescent"))),

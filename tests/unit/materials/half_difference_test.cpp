@@ -46,6 +46,7 @@ TEST(HalfDifference, IgnoresSwapAndRotation) {
     const HalfDifference a = to_half_difference(direction(to, 0), direction(ti, phi));
     const HalfDifference swapped = to_half_difference(direction(ti, phi), direction(to, 0));
     const HalfDifference turned = to_half_difference(direction(to, turn), direction(ti, phi + turn));
+    EXPECT_NE(a.is_swapped, swapped.is_swapped);
     EXPECT_EQ(a.theta_h, swapped.theta_h);
     EXPECT_EQ(a.theta_d, swapped.theta_d);
     EXPECT_NEAR(std::remainder(a.phi_d - swapped.phi_d, kPi64), 0, 1e-12);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "materials/acquisition.h"
 #include "materials/material.h"
 #include "separation/choose_model.h"
+#include "separation/fill_grid.h"
 #include "separation/separate.h"
 #include "separation/tabulate.h"
 
@@ -72,6 +74,81 @@ TEST(ResidualFit, BringsTheModelToTheTableItself) {
     }
   }
   EXPECT_LT(left, 0.02 * of);  // rounding to bytes, and the components left out
+}
+
+/// Colours that differ between the orders of a pair by a tenth, by where the light comes from.
+MeasuredBrdf not_reciprocal() {
+  const MeasuredBrdf glossy = acquired("glossy");
+  MeasuredTables tables = glossy.tables();
+  const std::size_t n = tables.axis.size(),
+                    rows = tables.slices() * std::size_t(tables.table_size) * std::size_t(tables.table_size);
+  // [slice][axis][row of the table]: brighter for light from low elevations.
+  tables.spectra.resize(rows * n);
+  const std::size_t per_slice = rows / tables.slices();
+  for (std::size_t r = 0; r < rows; ++r) {
+    const double tilt = 1 + 0.3 * double(r / per_slice) / double(tables.slices());
+    for (std::size_t k = 0; k < n; ++k) {
+      tables.spectra[(r / per_slice * n + k) * per_slice + r % per_slice] =
+          static_cast<float>(tilt * double(glossy.spectrum(static_cast<std::uint32_t>(r))[k]));
+    }
+  }
+  return MeasuredBrdf(std::move(tables));
+}
+
+/// Mean relative error of f cosθi over pairs in either order.
+double error_of(const SeparatedBrdf& model, const MeasuredBrdf& measured) {
+  std::array<Float, kLanes> nm{}, pdf{};
+  nm.fill(550);
+  pdf.fill(1);
+  const SampledWavelengths lambda(nm, pdf);
+  const ShadingPoint at{.lambda = lambda};
+  double sum = 0;
+  int count = 0;
+  for (double to = 0.1; to < 1.2; to += 0.17) {
+    for (double ti = 0.05; ti < 1.2; ti += 0.19) {
+      for (double phi = 0.05; phi < 6.2; phi += 0.41) {
+        const Vec3 wo{Float(std::sin(to)), 0, Float(std::cos(to))};
+        const Vec3 wi{Float(std::sin(ti) * std::cos(phi)), Float(std::sin(ti) * std::sin(phi)),
+                      Float(std::cos(ti))};
+        const double truth = double(measured.evaluate(wo, wi, at).value_cos[0]);
+        sum += std::abs(double(model.evaluate(wo, wi, at).value_cos[0]) / truth - 1);
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
+TEST(ResidualFit, KeepsWhatIsNotReciprocalUnlessToldNotTo) {
+  const MeasuredBrdf measured = not_reciprocal();
+  SilentProgress progress;
+  const auto fit = [&](bool reciprocal) {
+    SeparationOptions options = coarse(4);
+    options.reciprocal = reciprocal;
+    return std::make_shared<const SeparatedTables>(separate(measured, options, progress).tables);
+  };
+  const auto both = fit(false), one = fit(true);
+  EXPECT_FALSE(both->residual.odd.empty());
+  EXPECT_TRUE(one->residual.odd.empty());
+  const double with_odd = error_of(SeparatedBrdf(both, SeparationModel::kResidual), measured);
+  const double without = error_of(SeparatedBrdf(one, SeparationModel::kResidual), measured);
+  EXPECT_LT(with_odd, 0.02);
+  EXPECT_GT(without, 2 * with_odd);
+}
+
+TEST(FillGrid, TheOddPartGoesOnWithTheOtherSignAndVanishesAtThePoles) {
+  const HalfDifferenceGrid grid{.n_theta_h = 3, .n_theta_d = 3, .n_phi_d = 8};
+  std::vector<float> table(grid.size(), 1.0F);
+  table[grid.index(1, 1, 0)] = kNoValue;  // its neighbours: 1 at phi_d = 1, and 1 at 7, on the other side
+  for (const int p : {6, 7}) table[grid.index(2, 1, p)] = kNoValue;
+  fill_unmeasured_odd(grid, table);
+  EXPECT_EQ(table[grid.index(1, 1, 0)], 0);
+  EXPECT_EQ(table[grid.index(2, 1, 6)], 1);
+  EXPECT_EQ(table[grid.index(2, 1, 7)], -1);
+  for (int p = 0; p < grid.n_phi_d; ++p) {
+    EXPECT_EQ(table[grid.index(0, 2, p)], 0);
+    EXPECT_EQ(table[grid.index(2, 0, p)], 0);
+  }
 }
 
 TEST(ChooseModel, TakesTheCheapestWithinTheTolerance) {
