@@ -11,7 +11,7 @@ namespace spectrace {
 struct ResidualReport {
   /// Share of the squared residual, weighted by solid angle, that the terms explain: 1 for RGB.
   double explained = 0;
-  double clamped_share = 0;  ///< of all ratios: beyond what a byte times the step holds
+  double clamped_share = 0;  ///< of the even ratios: beyond what a byte times the step holds
 };
 
 /// Principal components of (X - diffraction model) / M over the axis, M the model's mean at each node, of

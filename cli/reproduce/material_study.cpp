@@ -84,10 +84,9 @@ class Study {
 
  private:
   void separate_it() {
-    SeparationOptions options;
+    SeparationOptions options = table_options();
     options.residual_rank = kDefaultResidualRank;
     options.analytic = true;
-    options.threads = options_.pictures.threads;
     SilentProgress progress;
     const SeparationResult result = separate(*input_.measured, options, progress);
     report_ = result.report;
@@ -118,6 +117,13 @@ class Study {
     advance();
   }
 
+  [[nodiscard]] SeparationOptions table_options() const {
+    SeparationOptions options;
+    options.grid = options_.grid;
+    options.threads = options_.pictures.threads;
+    return options;
+  }
+
   void picture_all() {
     const double table_s = input_.seconds + report_.seconds_table;
     const double steps_s = table_s + report_.seconds_step1 + report_.seconds_step2 + report_.seconds_step3;
@@ -146,9 +152,7 @@ class Study {
   template <typename Make, typename Brdf>
   void tabulated(const std::string& name, const Make& make, const Brdf& brdf) {
     const auto start = Clock::now();
-    SeparationOptions options;
-    options.threads = options_.pictures.threads;
-    auto table = std::make_shared<const HalfDifferenceTable>(make(*input_.measured, options));
+    auto table = std::make_shared<const HalfDifferenceTable>(make(*input_.measured, table_options()));
     const double seconds = input_.seconds + seconds_since(start);
     const auto bytes = std::int64_t((table->q.size() + table->odd.size()) * sizeof(float));
     picture({name, seconds, bytes}, brdf(std::move(table)));

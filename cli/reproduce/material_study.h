@@ -16,6 +16,7 @@ namespace spectrace::cli {
 
 struct StudyOptions {
   PictureOptions pictures;
+  HalfDifferenceGrid grid;               ///< of the table X and all that comes from it
   int quality = kDefaultQuality;         ///< of the compact form, in which sun to residual are pictured
   double tolerance = kDefaultTolerance;  ///< of --model auto
 };

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <system_error>
 
@@ -13,12 +12,12 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/image/image.h"
+#include "core/math/math.h"
 
 namespace spectrace::cli {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kPi = std::numbers::pi;
 
 /// The ball: a unit sphere with bumps, so that one picture holds many incidences, some in its own shade.
 Vec3 ball_point(double theta, double phi) {
@@ -31,7 +30,7 @@ Vec3 ball_point(double theta, double phi) {
 
 Vec3 ball_normal(double theta, double phi) {
   constexpr double kStep = 1e-3;  // [rad] far below a bump, far above the rounding of single precision
-  const double t = std::clamp(theta, 2 * kStep, kPi - 2 * kStep);
+  const double t = std::clamp(theta, 2 * kStep, kPi64 - 2 * kStep);
   const Vec3 along_theta = ball_point(t + kStep, phi) - ball_point(t - kStep, phi);
   const Vec3 along_phi = ball_point(t, phi + kStep) - ball_point(t, phi - kStep);
   return normalize(cross(along_theta, along_phi));
@@ -42,7 +41,7 @@ std::string ball_obj() {
   std::string text = "# A unit sphere with bumps. Made by spectrace.\n";
   for (int i = 0; i <= kRows; ++i) {
     for (int j = 0; j < kColumns; ++j) {
-      const double theta = kPi * i / kRows, phi = 2 * kPi * j / kColumns;
+      const double theta = kPi64 * i / kRows, phi = 2 * kPi64 * j / kColumns;
       const Vec3 p = ball_point(theta, phi), n = ball_normal(theta, phi);
       fmt::format_to(std::back_inserter(text), "v {:.6f} {:.6f} {:.6f}\nvn {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
                      p.z, n.x, n.y, n.z);
@@ -74,15 +73,15 @@ Image studio() {
   constexpr int kWidth = 512, kHeight = 256;
   Image image(kWidth, kHeight, {"R", "G", "B"});
   for (int y = 0; y < kHeight; ++y) {
-    const double elevation = kPi / 2 - kPi * (y + 0.5) / kHeight;
+    const double elevation = kPi64 / 2 - kPi64 * (y + 0.5) / kHeight;
     for (int x = 0; x < kWidth; ++x) {
-      const double azimuth = 2 * kPi * (x + 0.5) / kWidth;
+      const double azimuth = 2 * kPi64 * (x + 0.5) / kWidth;
       double radiance = std::lerp(kGround, kSky, 0.5 + 0.5 * std::sin(elevation));
       for (const Lamp& lamp : kLamps) {
-        const double e = lamp.elevation_deg * kPi / 180, a = lamp.azimuth_deg * kPi / 180;
+        const double e = lamp.elevation_deg * kPi64 / 180, a = lamp.azimuth_deg * kPi64 / 180;
         const double cosine =
             std::sin(e) * std::sin(elevation) + std::cos(e) * std::cos(elevation) * std::cos(a - azimuth);
-        const double angle = std::acos(std::clamp(cosine, -1.0, 1.0)) / (lamp.width_deg * kPi / 180);
+        const double angle = std::acos(std::clamp(cosine, -1.0, 1.0)) / (lamp.width_deg * kPi64 / 180);
         radiance += lamp.radiance * std::exp(-angle * angle);
       }
       for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<float>(radiance);

@@ -16,6 +16,7 @@
 
 #include "cli/command.h"
 #include "cli/console_progress.h"
+#include "cli/grid_option.h"
 #include "cli/reproduce/material_study.h"
 #include "cli/reproduce/reference_scene.h"
 #include "cli/reproduce/study_page.h"
@@ -147,16 +148,17 @@ class Report {
   }
 
   [[nodiscard]] std::string protocol() const {
+    const HalfDifferenceGrid& grid = arguments_.study.grid;
     return fmt::format(
         "A sphere and a bumpy ball, {} x {} pixels, {} samples a pixel, seed {}, environment {}; the light "
         "they "
         "reflect, linear sRGB, all pictures of a material on the same random paths; models from .sep files "
         "of "
-        "quality {}.",
+        "quality {}, {} x {} x {} cells.",
         2 * arguments_.height, arguments_.height, arguments_.study.pictures.spp,
         arguments_.study.pictures.seed,
         arguments_.environment.empty() ? "scene/studio.exr" : arguments_.environment,
-        arguments_.study.quality);
+        arguments_.study.quality, grid.n_theta_h, grid.n_theta_d, grid.n_phi_d);
   }
 
   [[nodiscard]] std::string key_of(const fs::path& file) const {
@@ -265,6 +267,7 @@ void add_reproduce(CLI::App& app, Action& chosen) {
   command->add_option("--tolerance", arguments->study.tolerance, "of the choice that --model auto would make")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  add_grid_option(*command, arguments->study.grid);
   command->add_option("--threads", arguments->study.pictures.threads, "threads to use, 0 = all cores")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
