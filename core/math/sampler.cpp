@@ -18,6 +18,38 @@ constexpr std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// The bits of a word in reverse order.
+constexpr std::uint32_t reversed(std::uint32_t x) {
+  x = (x & 0x55555555) << 1 | ((x >> 1) & 0x55555555);
+  x = (x & 0x33333333) << 2 | ((x >> 2) & 0x33333333);
+  x = (x & 0x0f0f0f0f) << 4 | ((x >> 4) & 0x0f0f0f0f);
+  x = (x & 0x00ff00ff) << 8 | ((x >> 8) & 0x00ff00ff);
+  return x << 16 | x >> 16;
+}
+
+/// Owen's nested uniform scramble, of a fraction whose first binary digit is bit 0: whether a digit flips is
+/// a hash of those before it. Only operations that carry upwards: Laine & Karras 2011, with the constants of
+/// N. Vegdahl, "Building a Better LK Hash", 2021 (as used by B. Burley, "Practical Hash-based Owen
+/// Scrambling", JCGT 9(4), 2020).
+constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t key) {
+  x ^= x * 0x3d20adea;
+  x += key;
+  x *= (key >> 16) | 1;
+  x ^= x * 0x05526c56;
+  x ^= x * 0x53a22864;
+  return x;
+}
+
+/// The second Sobol' dimension of index n, first binary digit in bit 0: digit i is the sum of C(j, i) n_j mod
+/// 2, and C(j, i) is odd where the bits of i are among those of j (Lucas).
+constexpr std::uint32_t sobol_second_digits(std::uint32_t n) {
+  n ^= (n & 0xaaaaaaaa) >> 1;
+  n ^= (n & 0xcccccccc) >> 2;
+  n ^= (n & 0xf0f0f0f0) >> 4;
+  n ^= (n & 0xff00ff00) >> 8;
+  return n ^ (n >> 16);
+}
+
 /// Counter `n` under `key`; the second mix parts keys that differ by a multiple of kGolden.
 constexpr std::uint64_t hash(std::uint64_t key, std::uint64_t n) { return mix(key ^ mix((n + 1) * kGolden)); }
 
@@ -64,11 +96,27 @@ constexpr Float to_unit(std::uint64_t bits) {
 }  // namespace
 
 Sampler::Sampler(std::uint64_t pixel, std::uint64_t sample, std::uint64_t seed)
-    : pixel_key_(hash(mix(seed + kGolden), pixel)), sample_(sample), sample_key_(hash(pixel_key_, sample)) {}
+    : pixel_key_(hash(mix(seed + kGolden), pixel)),
+      sample_(sample),
+      block_key_(hash(pixel_key_, sample >> 32)),
+      reversed_sample_(reversed(static_cast<std::uint32_t>(sample))) {}
 
 /// Rotates a sequence on the unit circle, for each pixel by an amount of its own. `~` keys it
 /// apart from the samples of that pixel.
 std::uint64_t Sampler::pixel_offset(std::uint32_t dimension) const { return hash(~pixel_key_, dimension); }
+
+/// Two scramblings of one dimension: of the samples' order, so that dimensions do not march in step, and of
+/// the digits.
+Sampler::Keys Sampler::keys(std::uint32_t dimension) const {
+  const std::uint64_t key = hash(block_key_, dimension);
+  return {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
+}
+
+/// The place of this sample in the dimension's own order: a permutation that keeps every aligned block of 2^k
+/// samples together.
+std::uint32_t Sampler::shuffled_index(std::uint32_t order_key) const {
+  return reversed(scrambled(reversed_sample_, order_key));
+}
 
 std::uint64_t Sampler::bits(std::uint32_t dimension) const {
   constexpr auto kWavelength = static_cast<std::uint32_t>(PathDimension::kWavelength);
@@ -80,9 +128,21 @@ std::uint64_t Sampler::bits(std::uint32_t dimension) const {
       return pixel_offset(dimension) + sample_ * kR2StepX;
     case kPixel + 1:
       return pixel_offset(dimension) + sample_ * kR2StepY;
-    default:
-      return hash(sample_key_, dimension);
+    default: {
+      const Keys of = keys(dimension);
+      return std::uint64_t(reversed(scrambled(shuffled_index(of.order), of.digits))) << 32;
+    }
   }
+}
+
+Vec2 Sampler::pair(std::uint32_t dimension) const {
+  if (dimension == static_cast<std::uint32_t>(PathDimension::kPixel)) {
+    return {number(dimension), number(dimension + 1)};
+  }
+  const Keys first = keys(dimension), second = keys(dimension + 1);
+  const std::uint32_t index = shuffled_index(first.order);
+  return {to_unit(std::uint64_t(reversed(scrambled(index, first.digits))) << 32),
+          to_unit(std::uint64_t(reversed(scrambled(sobol_second_digits(index), second.digits))) << 32)};
 }
 
 Float Sampler::number(std::uint32_t dimension) const { return to_unit(bits(dimension)); }

@@ -28,8 +28,11 @@ enum class VertexDimension : std::uint32_t {
   kEnd = 8,
 };
 
-/// The numbers of one sample of one pixel, each in [0, 1). Independent of each other, except that over the
-/// samples of one pixel kWavelength is stratified and kPixel is a low-discrepancy set.
+/// The numbers of one sample of one pixel, each in [0, 1). Over the samples of a pixel every number, and
+/// every pair of get2d(), is an Owen-scrambled Sobol' sequence with a scrambling and an order of its own:
+/// each aligned block of 2^k samples has one in every stratum of width 2^-k, and one in every elementary box
+/// of area 2^-k of a pair. Different numbers, and different pixels, are independent. kWavelength is
+/// stratified for heroes and lanes, kPixel an additive recurrence.
 class Sampler {
  public:
   /// `pixel` = y · width + x of the whole image, crop windows included.
@@ -48,16 +51,20 @@ class Sampler {
     return static_cast<std::uint32_t>(PathDimension::kCameraEnd) +
            vertex * static_cast<std::uint32_t>(VertexDimension::kEnd) + static_cast<std::uint32_t>(d);
   }
+  struct Keys {
+    std::uint32_t order = 0, digits = 0;
+  };
+  [[nodiscard]] Keys keys(std::uint32_t dimension) const;
+  [[nodiscard]] std::uint32_t shuffled_index(std::uint32_t order_key) const;
   [[nodiscard]] Float number(std::uint32_t dimension) const;
+  [[nodiscard]] Vec2 pair(std::uint32_t dimension) const;
   [[nodiscard]] std::uint64_t bits(std::uint32_t dimension) const;
   [[nodiscard]] std::uint64_t pixel_offset(std::uint32_t dimension) const;
-  [[nodiscard]] Vec2 pair(std::uint32_t dimension) const {
-    return {number(dimension), number(dimension + 1)};
-  }
 
   std::uint64_t pixel_key_;
   std::uint64_t sample_;
-  std::uint64_t sample_key_;
+  std::uint64_t block_key_;  // of 2^32 samples
+  std::uint32_t reversed_sample_;
 };
 
 }  // namespace spectrace

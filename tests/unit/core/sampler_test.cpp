@@ -56,7 +56,7 @@ TEST(Sampler, NumbersStayWhatTheyWere) {
   EXPECT_NEAR(s.get1d(PathDimension::kWavelength), 0.4418148398, 1e-7);
   EXPECT_NEAR(s.get2d(PathDimension::kPixel).x, 0.7928214669, 1e-7);
   EXPECT_NEAR(s.get2d(PathDimension::kPixel).y, 0.3389383554, 1e-7);
-  EXPECT_NEAR(s.get1d(2, VertexDimension::kRoulette), 0.9425318241, 1e-7);
+  EXPECT_NEAR(s.get1d(2, VertexDimension::kRoulette), 0.3633237481, 1e-7);
 }
 
 TEST(Sampler, NumbersLieInTheHalfOpenUnitInterval) {
@@ -89,8 +89,9 @@ TEST(Sampler, NeighboursAreIndependent) {
   expect_independent("rows", [](std::uint64_t i) -> Vec2 {
     return {bsdf_x(i, 0, 0), bsdf_x(i + 1024, 0, 0)};
   });
-  expect_independent("samples", [](std::uint64_t i) -> Vec2 {
-    return {bsdf_x(9, i, 0), bsdf_x(9, i + 1, 0)};
+  // Neighbours within a block of samples are stratified; those a block apart know nothing of each other.
+  expect_independent("blocks of samples", [](std::uint64_t i) -> Vec2 {
+    return {bsdf_x(i, 3, 0), bsdf_x(i, 3 + (std::uint64_t(1) << 32), 0)};
   });
   expect_independent("seeds", [](std::uint64_t i) -> Vec2 { return {bsdf_x(9, 0, i), bsdf_x(9, 0, i + 1)}; });
   expect_independent("pixel and seed exchanged", [](std::uint64_t i) -> Vec2 {
@@ -147,7 +148,8 @@ TEST(Sampler, PixelPositionsFillThePixelEvenly) {
       for (int i = 0; i < n; ++i) {
         const Vec2 u = Sampler(8, static_cast<std::uint64_t>(i), 0).get2d(PathDimension::kPixel);
         inside += u.x < Float(a) / 32 && u.y < Float(b) / 32;
-        const Vec2 v = Sampler(8, static_cast<std::uint64_t>(i), 0).get2d(0, VertexDimension::kBsdf);
+        // Another pixel each time: independent.
+        const Vec2 v = Sampler(static_cast<std::uint64_t>(i), 0, 0).get2d(0, VertexDimension::kBsdf);
         random_inside += v.x < Float(a) / 32 && v.y < Float(b) / 32;
       }
       worst = std::max(worst, std::abs(inside - n * double(a) * b / 1024));
@@ -156,6 +158,41 @@ TEST(Sampler, PixelPositionsFillThePixelEvenly) {
   }
   EXPECT_LT(worst, 8);
   EXPECT_GT(worst_random, 20);
+}
+
+TEST(Sampler, EveryElementaryBoxOfAPairHasOneSample) {
+  for (const std::uint64_t first : {0U, 64U, 4096U}) {  // any aligned block of samples
+    for (int columns_log2 = 0; columns_log2 <= 6; ++columns_log2) {
+      const int columns = 1 << columns_log2, rows = 64 / columns;
+      std::set<int> boxes;
+      for (std::uint64_t i = first; i < first + 64; ++i) {
+        const Vec2 u = Sampler(3, i, 7).get2d(2, VertexDimension::kLight);
+        boxes.insert(int(u.x * Float(columns)) * rows + int(u.y * Float(rows)));
+      }
+      EXPECT_EQ(boxes.size(), 64U) << columns << " columns, from sample " << first;
+    }
+  }
+}
+
+TEST(Sampler, EverySingleNumberIsStratified) {
+  for (const VertexDimension d : {VertexDimension::kLightChoice, VertexDimension::kBsdfLobe,
+                                  VertexDimension::kRoulette, VertexDimension::kMask}) {
+    std::set<int> strata;
+    for (std::uint64_t i = 0; i < 256; ++i) strata.insert(int(Sampler(11, i, 0).get1d(1, d) * 256));
+    EXPECT_EQ(strata.size(), 256U);
+  }
+}
+
+TEST(Sampler, NumbersOfOneSampleAreIndependentOverTheSamplesOfAPixel) {
+  // Padded sequences share their index: without an order of its own each would be a function of the other.
+  expect_independent("light and BSDF", [](std::uint64_t i) -> Vec2 {
+    const Sampler s(5, i, 0);
+    return {s.get2d(0, VertexDimension::kLight).x, s.get2d(0, VertexDimension::kBsdf).x};
+  });
+  expect_independent("one number at two vertices", [](std::uint64_t i) -> Vec2 {
+    const Sampler s(5, i, 0);
+    return {s.get1d(0, VertexDimension::kBsdfLobe), s.get1d(1, VertexDimension::kBsdfLobe)};
+  });
 }
 
 TEST(Sampler, WavelengthAndPixelPositionAreJointlyEven) {
