@@ -56,8 +56,14 @@ class CompressedCost final : public ceres::SizedCostFunction<int(kAugmented), kF
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
     LobeVector x;
     std::copy_n(parameters[0], kFitParameters, x.begin());
-    const Gram r = cholesky(sums_ == Sums::kInParallel ? lobe_gram_in_parallel(cells_, epsilon_, x)
-                                                       : lobe_gram(cells_, epsilon_, x));
+    // Ceres asks for the residuals of a step, and if it takes it for the Jacobian at the same place.
+    if (!has_last_ || x != last_x_) {
+      last_ = cholesky(sums_ == Sums::kInParallel ? lobe_gram_in_parallel(cells_, epsilon_, x)
+                                                  : lobe_gram(cells_, epsilon_, x));
+      last_x_ = x;
+      has_last_ = true;
+    }
+    const Gram& r = last_;
     for (std::size_t i = 0; i < kAugmented; ++i) residuals[i] = r[i][kFitParameters];
     if (jacobians && jacobians[0]) {
       for (std::size_t i = 0; i < kAugmented; ++i) {
@@ -71,6 +77,9 @@ class CompressedCost final : public ceres::SizedCostFunction<int(kAugmented), kF
   const LobeCells& cells_;
   double epsilon_;
   Sums sums_;
+  mutable bool has_last_ = false;
+  mutable LobeVector last_x_{};
+  mutable Gram last_{};
 };
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "separation/diffuse_colour.h"
 
+#include <ceres/ceres.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/math/math.h"
 #include "separation/analytic_fit.h"
@@ -22,6 +22,9 @@ constexpr std::size_t kStride = 7;
 // Least determinant of the two equations: at 1 the dark cells are free of specular light, at 0 the lobe has
 // the same share everywhere.
 constexpr double kLeastContrast = 0.05;
+// Of the fit's cost and unknowns: c_d moves by less than 1e-4 beyond it (optimality_test).
+constexpr double kTolerance = 1e-10;
+constexpr int kMaxIterations = 200;
 // A theta_d whose highlight is darker than this, relative to the brightest, is read with all others together.
 constexpr double kLeastHighlight = 1e-3;
 
@@ -87,33 +90,71 @@ Arrow arrow_at(const CellTable& table, double epsilon, const FreeFresnelFit& fit
   return sum;
 }
 
-/// One step of damped Gauss-Newton inside the bounds; the factors are eliminated first.
-FreeFresnelFit stepped(const FreeFresnelFit& from, const Arrow& e, double damping) {
-  constexpr double kLargestStep = 0.7;  // of ln alpha: a factor of two
-  const double more = 1 + damping;
-  double aa = e.aa * more, al = e.al, ll = e.ll * more, g_a = e.g_a, g_l = e.g_l;
-  const auto is_held = [&](std::size_t d) { return !(e.ff[d] > 0) || (from.factor[d] <= 0 && e.g_f[d] > 0); };
-  for (std::size_t d = 0; d < e.ff.size(); ++d) {
-    if (is_held(d)) continue;
-    const double inverse = 1 / (e.ff[d] * more);
-    aa -= e.af[d] * e.af[d] * inverse, al -= e.af[d] * e.lf[d] * inverse, ll -= e.lf[d] * e.lf[d] * inverse;
-    g_a -= e.af[d] * e.g_f[d] * inverse, g_l -= e.lf[d] * e.g_f[d] * inverse;
+/// The Cholesky factor of the normal equations, factors first, and its last column: as many residuals as
+/// unknowns and one more, with the cost, gradient and normal equations of all cells together, so that Ceres
+/// solves the full problem while seeing these (as in step 1). Unknowns: a factor for each theta_d, albedo_d,
+/// ln alpha.
+class FreeFresnelCost final : public ceres::CostFunction {
+ public:
+  FreeFresnelCost(const CellTable& table, double epsilon) : table_(table), epsilon_(epsilon) {
+    const int n_d = table.grid.n_theta_d;
+    set_num_residuals(n_d + 3);
+    mutable_parameter_block_sizes()->push_back(n_d + 2);
   }
-  const double determinant = aa * ll - al * al;
-  FreeFresnelFit to = from;
-  if (determinant > 0) {
-    to.albedo_d = std::clamp(from.albedo_d - (ll * g_a - al * g_l) / determinant, 0.0, 1.0);
-    const double step = std::clamp(-(aa * g_l - al * g_a) / determinant, -kLargestStep, kLargestStep);
-    to.alpha = std::clamp(from.alpha * std::exp(step), 1e-3, 1.0);  // bounds of AnalyticFit
+
+  static FreeFresnelFit fit_of(const double* x, std::size_t n_d) {
+    return {.albedo_d = x[n_d], .alpha = std::exp(x[n_d + 1]), .factor = std::vector<double>(x, x + n_d)};
   }
-  const double d_a = to.albedo_d - from.albedo_d, d_l = std::log(to.alpha / from.alpha);
-  for (std::size_t d = 0; d < e.ff.size(); ++d) {
-    if (is_held(d)) continue;
-    const double step = -(e.g_f[d] + e.af[d] * d_a + e.lf[d] * d_l) / (e.ff[d] * more);
-    to.factor[d] = std::max(from.factor[d] + step, 0.0);
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const auto n_d = std::size_t(table_.grid.n_theta_d), columns = n_d + 2;
+    const Arrow& e = equations_at(parameters[0]);
+    double* const jacobian = jacobians ? jacobians[0] : nullptr;
+    if (jacobian) std::fill(jacobian, jacobian + (n_d + 3) * columns, 0.0);
+    const auto set = [&](std::size_t row, std::size_t column, double value) {
+      if (jacobian) jacobian[row * columns + column] = value;
+    };
+    double aa = e.aa, al = e.al, ll = e.ll, g_a = e.g_a, g_l = e.g_l, rest = e.cost;
+    for (std::size_t d = 0; d < n_d; ++d) {
+      residuals[d] = 0;
+      if (!(e.ff[d] > 0)) continue;  // no cell has this factor
+      const double pivot = std::sqrt(e.ff[d]), to_a = e.af[d] / pivot, to_l = e.lf[d] / pivot;
+      residuals[d] = e.g_f[d] / pivot;
+      set(d, d, pivot), set(d, n_d, to_a), set(d, n_d + 1, to_l);
+      aa -= to_a * to_a, al -= to_a * to_l, ll -= to_l * to_l;
+      g_a -= to_a * residuals[d], g_l -= to_l * residuals[d], rest -= residuals[d] * residuals[d];
+    }
+    const double pivot_a = std::sqrt(std::max(aa, kRankTolerance * e.aa));
+    const double a_to_l = pivot_a > 0 ? al / pivot_a : 0;
+    residuals[n_d] = pivot_a > 0 ? g_a / pivot_a : 0;
+    set(n_d, n_d, pivot_a), set(n_d, n_d + 1, a_to_l);
+    const double pivot_l = std::sqrt(std::max(ll - a_to_l * a_to_l, kRankTolerance * e.ll));
+    residuals[n_d + 1] = pivot_l > 0 ? (g_l - a_to_l * residuals[n_d]) / pivot_l : 0;
+    set(n_d + 1, n_d + 1, pivot_l);
+    rest -= residuals[n_d] * residuals[n_d] + residuals[n_d + 1] * residuals[n_d + 1];
+    residuals[n_d + 2] = std::sqrt(std::max(rest, 0.0));
+    return std::all_of(residuals, residuals + n_d + 3, [](double r) { return std::isfinite(r); });
   }
-  return to;
-}
+
+ private:
+  // Where albedo_d or ln alpha is all but in the span of the others, rounding is left of its pivot.
+  static constexpr double kRankTolerance = 1e-14;
+
+  /// Ceres asks for the residuals of a step, and if it takes it for the Jacobian at the same place.
+  const Arrow& equations_at(const double* x) const {
+    const auto n_d = std::size_t(table_.grid.n_theta_d);
+    if (!std::equal(last_x_.begin(), last_x_.end(), x, x + n_d + 2)) {
+      last_ = arrow_at(table_, epsilon_, fit_of(x, n_d));
+      last_x_.assign(x, x + n_d + 2);
+    }
+    return last_;
+  }
+
+  const CellTable& table_;
+  double epsilon_;
+  mutable std::vector<double> last_x_;
+  mutable Arrow last_{0};
+};
 
 /// What the two equations need of each cell well above the horizon.
 struct Cells {
@@ -204,30 +245,31 @@ std::vector<double> cell_weights(const CellTable& table, const Cells& cells, con
 }  // namespace
 
 FreeFresnelFit fit_free_fresnel(const CellTable& table, double epsilon, const AnalyticFit& start) {
-  constexpr int kMaxSteps = 40;
-  constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e6;
-  constexpr double kRelativeTolerance = 1e-9;  // of the cost: c_d moves by less than 1e-4 beyond it
-  FreeFresnelFit best{.albedo_d = start.albedo_d, .alpha = start.alpha, .factor = {}};
-  for (int d = 0; d < table.grid.n_theta_d; ++d) {
-    const double schlick = std::pow(1 - std::cos(table.grid.theta_d(d)), 5);
-    best.factor.push_back(start.rho_0 * (start.f_0 + (1 - start.f_0) * schlick));
+  const auto n_d = std::size_t(table.grid.n_theta_d);
+  std::vector<double> x;
+  for (std::size_t d = 0; d < n_d; ++d) {
+    const double schlick = std::pow(1 - std::cos(table.grid.theta_d(double(d))), 5);
+    x.push_back(start.rho_0 * (start.f_0 + (1 - start.f_0) * schlick));
   }
-  Arrow equations = arrow_at(table, epsilon, best);
-  double damping = kFirstDamping;
-  for (int step = 0; step < kMaxSteps && damping < kMostDamping; ++step) {
-    const FreeFresnelFit trial = stepped(best, equations, damping);
-    Arrow at_trial = arrow_at(table, epsilon, trial);
-    if (!(at_trial.cost < equations.cost)) {
-      damping *= 10;
-      continue;
-    }
-    const bool converged = equations.cost - at_trial.cost < kRelativeTolerance * equations.cost;
-    best = trial;
-    equations = std::move(at_trial);
-    damping = std::max(damping / 10, kLeastDamping);
-    if (converged) break;
-  }
-  return best;
+  x.push_back(start.albedo_d);
+  x.push_back(std::log(start.alpha));
+  ceres::Problem problem;
+  problem.AddResidualBlock(new FreeFresnelCost(table, epsilon), nullptr, x.data());
+  for (int i = 0; i < int(n_d) + 1; ++i) problem.SetParameterLowerBound(x.data(), i, 0);
+  problem.SetParameterUpperBound(x.data(), int(n_d), 1);
+  problem.SetParameterLowerBound(x.data(), int(n_d) + 1, std::log(kLeastAlpha));
+  problem.SetParameterUpperBound(x.data(), int(n_d) + 1, 0);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kMaxIterations;
+  options.function_tolerance = kTolerance;
+  options.parameter_tolerance = kTolerance;
+  options.gradient_tolerance = 0;  // scales with the number of cells
+  options.num_threads = 1;         // the sum over cells is what runs in parallel
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return FreeFresnelCost::fit_of(x.data(), n_d);
 }
 
 std::optional<std::vector<float>> diffuse_colour(const MeasuredBrdf& measured, const CellTable& table,
