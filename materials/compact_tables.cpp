@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kFormat = "spectrace compact separated material 1";
 
-constexpr std::array<std::string_view, 22> kFields{"format",
+constexpr std::array<std::string_view, 19> kFields{"format",
                                                    "nodes",
                                                    "theta_h_spacing",
                                                    "wavelengths",
@@ -34,9 +34,6 @@ constexpr std::array<std::string_view, 22> kFields{"format",
                                                    "s_fresnel_codes",
                                                    "s_diffraction_scale",
                                                    "s_diffraction_codes",
-                                                   "residual_basis",
-                                                   "residual_step",
-                                                   "residual_ratio",
                                                    "analytic",
                                                    "source_name",
                                                    "source_sha256",
@@ -165,7 +162,7 @@ bool is_compact(const TensorFile& tensors) {
 
 CompactTables compact_from_tensors(const TensorFile& tensors) {
   const TensorReader reader(tensors);
-  reader.refuse_unknown(kFields);
+  reader.refuse_unknown({kFields, kResidualFields});
   CompactTables tables;
   tables.axis = reader.axis();
   tables.grid = read_nodes(reader);

@@ -19,10 +19,9 @@ namespace {
 
 constexpr std::string_view kFormat = "spectrace separated material 1";
 
-constexpr std::array<std::string_view, 16> kFields{
-    "format",         "theta_h_spacing", "wavelengths",   "c_d",      "diffuse_shape",  "rho_s",
-    "s_sun",          "s_fresnel",       "s_diffraction", "analytic", "residual_basis", "residual_step",
-    "residual_ratio", "source_name",     "source_sha256", "report"};
+constexpr std::array<std::string_view, 13> kFields{
+    "format",    "theta_h_spacing", "wavelengths", "c_d",         "diffuse_shape", "rho_s", "s_sun",
+    "s_fresnel", "s_diffraction",   "analytic",    "source_name", "source_sha256", "report"};
 
 HalfDifferenceGrid read_grid(const TensorFile& tensors, const TensorReader& reader) {
   HalfDifferenceGrid grid;
@@ -73,7 +72,7 @@ SeparatedTables separated_from_tensors(const TensorFile& tensors) {
   if (const std::string format = reader.text("format"); format != kFormat) {
     reader.fail("format", fmt::format("expected \"{}\"", kFormat));
   }
-  reader.refuse_unknown(kFields);
+  reader.refuse_unknown({kFields, kResidualFields});
   SeparatedTables tables;
   tables.axis = reader.axis();
   tables.grid = read_grid(tensors, reader);

@@ -105,10 +105,11 @@ std::size_t TensorReader::rank(std::string_view name, std::size_t largest) const
   return rank;
 }
 
-void TensorReader::refuse_unknown(std::span<const std::string_view> known) const {
-  const std::vector<std::string> names(known.begin(), known.end());
+void TensorReader::refuse_unknown(std::initializer_list<std::span<const std::string_view>> known) const {
+  std::vector<std::string> names;
+  for (const auto& list : known) names.insert(names.end(), list.begin(), list.end());
   for (const Tensor& tensor : file_.tensors()) {
-    if (std::find(known.begin(), known.end(), tensor.name) == known.end()) {
+    if (std::find(names.begin(), names.end(), tensor.name) == names.end()) {
       fail(tensor.name, "is no field of a separated material" + suggestion(tensor.name, names));
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,8 +38,8 @@ class TensorReader {
   [[nodiscard]] std::vector<std::uint16_t> shorts(std::string_view name, const PlaneShape& shape) const;
   /// Rows of a field of two dimensions: the number of terms of a sum, from 1 to `largest`.
   [[nodiscard]] std::size_t rank(std::string_view name, std::size_t largest) const;
-  /// Every field must be one of `known`: an optional one under another name would be missed unnoticed.
-  void refuse_unknown(std::span<const std::string_view> known) const;
+  /// Every field must be in one of the lists: an optional one under another name would be missed unnoticed.
+  void refuse_unknown(std::initializer_list<std::span<const std::string_view>> known) const;
   [[noreturn]] void fail(std::string_view name, std::string problem) const;
 
  private:

@@ -64,6 +64,24 @@ TEST(Compact, MorePrecisionIsALargerFileAndASmallerError) {
   }
 }
 
+TEST(Compact, EveryOptionalFieldIsReadFromEitherForm) {
+  const auto tables = material();
+  tables->residual.odd.assign(tables->residual.ratio.size(), std::int8_t(3));
+  tables->diffuse_shape.assign(kGrid.size(), 0.5F);
+  tables->source_sha256 = std::string(64, 'a');
+  tables->report_json = "{}";
+  const auto parsed = [](const TensorFile& file) { return TensorFile::parse(file.serialize(), "a.sep"); };
+  const SeparatedTables plain = separated_from_tensors(parsed(separated_to_tensors(*tables)));
+  const CompactTables small = compact_from_tensors(parsed(compact_to_tensors(compact(*tables, 6).tables)));
+  EXPECT_EQ(plain.residual.odd, tables->residual.odd);
+  EXPECT_EQ(small.residual.odd, tables->residual.odd);
+  EXPECT_EQ(plain.diffuse_shape, tables->diffuse_shape);
+  EXPECT_EQ(small.diffuse_shape.size(), kGrid.size());
+  EXPECT_EQ(plain.analytic, tables->analytic);
+  EXPECT_EQ(small.analytic, tables->analytic);
+  EXPECT_EQ(small.report_json, "{}");
+}
+
 TEST(Compact, AFileGivesBackTheSameMaterial) {
   const CompactResult result = compact(*material(), 6);
   const TensorFile file = compact_to_tensors(result.tables);
