@@ -126,7 +126,12 @@ InspectReport inspect_scene(const std::filesystem::path& file) {
   camera.add("origin", text_of(scene.camera.origin));
   camera.add("target", text_of(scene.camera.target));
   camera.add("up", text_of(scene.camera.up));
-  camera.add("fov_deg", double(scene.camera.fov_deg));
+  if (scene.camera.projection == Projection::kOrthographic) {
+    camera.add("view_size", double(scene.camera.view_size));
+  } else {
+    camera.add("fov_deg", double(scene.camera.fov_deg));
+  }
+  if (scene.camera.lens_radius > 0) camera.add("lens_radius", double(scene.camera.lens_radius));
 
   ShapeCounts counts;
   count_shapes(scene.shapes, counts);

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "materials/lambert.h"
 
+#include "core/math/concentric_disk.h"
 #include "core/math/math.h"
 
 namespace spectrace {
 
 Vec3 sample_cosine_hemisphere(Vec2 u) {
-  const Float a = 2 * u.x - 1, b = 2 * u.y - 1;
-  if (a == 0 && b == 0) return {0, 0, 1};
-  const bool wide = std::abs(a) > std::abs(b);
-  const Float r = wide ? a : b;
-  const Float phi = wide ? kPi / 4 * (b / a) : kPi / 2 - kPi / 4 * (a / b);
-  return {r * std::cos(phi), r * std::sin(phi), safe_sqrt(1 - sqr(r))};
+  const Vec2 disk = concentric_disk(u);
+  return {disk.x, disk.y, safe_sqrt(1 - sqr(disk.x) - sqr(disk.y))};
 }
 
 BsdfValue Lambert::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {

@@ -32,7 +32,8 @@ bool has_specular_parts(const Material& material) {
 }  // namespace
 
 Features required_features(const Scene& scene, bool layers) {
-  Features f{.indirect = scene.integrator.max_depth > 1,
+  Features f{.depth_of_field = scene.camera.has_lens(),
+             .indirect = scene.integrator.max_depth > 1,
              .area_lights = scene.lights.area_count() > 0,
              .delta_lights = scene.lights.delta_count() > 0,
              .environment = scene.lights.environment().has_value(),

@@ -14,6 +14,7 @@ namespace spectrace {
 
 /// One flag an effect. A kernel may leave out what a scene does not have; that changes no bit of its image.
 struct Features {
+  bool depth_of_field = false;
   bool indirect = false;  ///< more than one bounce
   bool area_lights = false;
   bool delta_lights = false;  ///< point and directional
@@ -35,7 +36,7 @@ struct FeatureInfo {
   std::string_view name;
   std::string_view missing;
 };
-inline constexpr std::array<FeatureInfo, 11> kFeatureInfos{{
+inline constexpr std::array<FeatureInfo, 12> kFeatureInfos{{
     {&Features::indirect, "indirect light", "max_depth is at most 1"},
     {&Features::area_lights, "area lights", "no shape emits"},
     {&Features::delta_lights, "point and directional lights", "none in the scene"},
@@ -46,7 +47,9 @@ inline constexpr std::array<FeatureInfo, 11> kFeatureInfos{{
     {&Features::textures, "textures", "no material varies over its surface"},
     {&Features::instances, "instances", "none in the scene"},
     {&Features::lobe_layers, "layers by lobe", "not asked for"},
-    {&Features::specular_parts, "parts of the specular layer", "not asked for, or no separated material that has them"},
+    {&Features::specular_parts, "parts of the specular layer",
+     "not asked for, or no separated material that has them"},
+    {&Features::depth_of_field, "depth of field", "the camera has no lens"},
 }};
 
 /// Everything on.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/base/error.h"
+#include "core/math/concentric_disk.h"
 #include "renderer/path_tracer.h"
 
 namespace spectrace {
@@ -12,15 +13,28 @@ namespace spectrace {
 namespace {
 
 template <Features kFeatures>
+Ray camera_ray(const Camera& camera, const Sampler& sampler, int x, int y) {
+  const Vec2 jitter = sampler.get2d(PathDimension::kPixel);
+  const Vec2 position{Float(x) + jitter.x, Float(y) + jitter.y};
+  if constexpr (kFeatures.depth_of_field) {
+    return camera.ray(position, concentric_disk(sampler.get2d(PathDimension::kLens)));
+  }
+  return camera.ray(position);
+}
+
+/// `tile` in pixels of the film, which holds the scene's crop window.
+template <Features kFeatures>
 void render_tile(const Scene& scene, std::uint64_t seed, SampleRange samples, Tile tile, Film& film) {
   const FlushDenormals flush;
+  const CropWindow window = scene.film.window();
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(film.width()) + std::uint64_t(x);
+      const int image_x = window.x + x, image_y = window.y + y;
+      const std::uint64_t pixel =
+          std::uint64_t(image_y) * std::uint64_t(scene.film.width) + std::uint64_t(image_x);
       for (std::uint64_t i = samples.first; i < samples.last; ++i) {
         const Sampler sampler(pixel, i, seed);
-        const Vec2 jitter = sampler.get2d(PathDimension::kPixel);
-        const Ray ray = scene.camera.ray({Float(x) + jitter.x, Float(y) + jitter.y});
+        const Ray ray = camera_ray<kFeatures>(scene.camera, sampler, image_x, image_y);
         film.add(x, y, PathTracer<kFeatures>(scene, sampler).trace(ray));
       }
     }

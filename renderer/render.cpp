@@ -71,7 +71,8 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
   SPECTRACE_CHECK(options.spp >= 1 && options.threads >= 0);
   const Features needed = required_features(scene, options.layers);
   const Kernel& kernel = kernel_for(needed, options.kernel);
-  Film film(scene.film.width, scene.film.height);
+  const CropWindow window = scene.film.window();
+  Film film(window.width, window.height);
   const std::vector<Tile> tiles = make_tiles(film.width(), film.height());
   const SampleRange samples{0, std::uint64_t(options.spp)};
 
@@ -122,6 +123,9 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
       {"spectrace:sceneFile", scene.file_name},
       {"spectrace:sceneSha256", scene.sha256},
       {"spectrace:materialSha256s", join(scene.material_sha256s)},
+      {"spectrace:cropWindow", fmt::format("{} {} {} {} of {} x {}", scene.film.window().x,
+                                           scene.film.window().y, scene.film.window().width,
+                                           scene.film.window().height, scene.film.width, scene.film.height)},
       {"spectrace:seed", std::to_string(options.seed)},  // text: 64 unsigned bits fit no other attribute
       {"spectrace:spp", std::int64_t(options.spp)},
       {"spectrace:sampleRange", fmt::format("0:{}", options.spp)},

@@ -30,8 +30,16 @@ void check_camera(const SceneDesc& scene) {
   if (!(c.fov_deg > 0 && c.fov_deg < 180)) {
     fail("fov", "must lie in (0, 180) degrees");
   }
+  if (!(c.view_size > 0) || !(c.lens_radius >= 0) || !(c.focus_distance >= 0)) {
+    fail("lens_radius", "a lens and its distances must not be negative");
+  }
   if (scene.film.width < 1 || scene.film.height < 1) {
     throw InputError(scene.file_name, "/film", "needs at least one pixel");
+  }
+  const CropWindow w = scene.film.window();
+  if (w.x < 0 || w.y < 0 || w.width < 1 || w.height < 1 || w.width > scene.film.width - w.x ||
+      w.height > scene.film.height - w.y) {
+    throw InputError(scene.file_name, "/film/crop", "does not lie within the image");
   }
 }
 

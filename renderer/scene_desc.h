@@ -16,13 +16,27 @@
 
 namespace spectrace {
 
-struct CameraDesc {  ///< pinhole
+enum class Projection : std::uint8_t { kPerspective, kOrthographic };
+
+struct CameraDesc {
   Vec3 origin{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
-  Float fov_deg = 45;  ///< of the shorter image side, in (0, 180)
+  Float fov_deg = 45;  ///< perspective: of the shorter image side, in (0, 180)
+  Projection projection = Projection::kPerspective;
+  Float view_size = 2;       ///< orthographic: across the shorter image side, > 0
+  Float lens_radius = 0;     ///< of a thin lens; 0: all is sharp
+  Float focus_distance = 0;  ///< along the view, of what a lens shows sharp; 0: as far as the target
+};
+
+/// Pixels [x, x + width) x [y, y + height) of the image.
+struct CropWindow {
+  int x = 0, y = 0, width = 0, height = 0;
 };
 
 struct FilmDesc {
   int width = 512, height = 512;
+  std::optional<CropWindow> crop{};  ///< within the image: what is rendered of it
+
+  [[nodiscard]] CropWindow window() const { return crop.value_or(CropWindow{0, 0, width, height}); }
 };
 
 struct IntegratorDesc {

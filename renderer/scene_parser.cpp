@@ -44,14 +44,23 @@ void parse_spectrum_section(const JsonValue& json, SceneDesc& scene) {
 }
 
 void parse_camera(const JsonValue& json, CameraDesc& camera) {
-  static_cast<void>(json.get("type").choice("pinhole", {"pinhole"}));  // the only kind: checked, not stored
+  const std::string type = json.get("type").choice("pinhole", {"pinhole", "thin_lens", "orthographic"});
   camera.origin = json.require("origin").vec3(camera.origin);
   const JsonValue target = json.require("target");
   camera.target = target.vec3(camera.target);
   const JsonValue up = json.get("up");
   camera.up = parse_nonzero(up, camera.up);
-  camera.fov_deg = static_cast<Float>(
-      json.get("fov_deg").number(camera.fov_deg, {.min = 0, .max = 180, .min_open = true, .max_open = true}));
+  if (type == "orthographic") {
+    camera.projection = Projection::kOrthographic;
+    camera.view_size = static_cast<Float>(json.get("view_size").number(camera.view_size, kPositiveFloat));
+  } else {
+    camera.fov_deg = static_cast<Float>(json.get("fov_deg").number(
+        camera.fov_deg, {.min = 0, .max = 180, .min_open = true, .max_open = true}));
+  }
+  if (type == "thin_lens") {
+    camera.lens_radius = static_cast<Float>(json.require("lens_radius").number(0, kNonNegativeFloat));
+    camera.focus_distance = static_cast<Float>(json.get("focus_distance").number(0, kPositiveFloat));
+  }
   json.reject_unknown_keys();
   if (!json.is_object()) {
     return;
@@ -64,14 +73,31 @@ void parse_camera(const JsonValue& json, CameraDesc& camera) {
   }
 }
 
+/// [x, y, width, height] in pixels of the image.
+std::optional<CropWindow> parse_crop(const JsonValue& json, const FilmDesc& film) {
+  const std::vector<JsonValue> parts = json.elements();
+  if (parts.size() != 4) {
+    json.error("expected [x, y, width, height] in pixels of the image");
+    return std::nullopt;
+  }
+  const auto part = [&](std::size_t i, std::int64_t fallback, std::int64_t min, std::int64_t max) {
+    return static_cast<int>(parts[i].integer(fallback, min, max));
+  };
+  CropWindow crop{.x = part(0, 0, 0, film.width - 1), .y = part(1, 0, 0, film.height - 1)};
+  crop.width = part(2, 1, 1, film.width - crop.x);
+  crop.height = part(3, 1, 1, film.height - crop.y);
+  return crop;
+}
+
 void parse_film(const JsonValue& json, FilmDesc& film) {
   const std::int64_t width = json.get("width").integer(film.width, 1, kMaxSide);
   const std::int64_t height = json.get("height").integer(film.height, 1, kMaxSide);
+  film = {static_cast<int>(width), static_cast<int>(height)};
+  if (const JsonValue crop = json.get("crop"); crop.exists()) film.crop = parse_crop(crop, film);
   json.reject_unknown_keys();
   if (width * height > kMaxPixels) {
     json.error(fmt::format("{} x {} pixels: more than {}", width, height, kMaxPixels));
   }
-  film = {static_cast<int>(width), static_cast<int>(height)};
 }
 
 void parse_sampler(const JsonValue& json, SceneDesc& scene) {

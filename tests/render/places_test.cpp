@@ -61,6 +61,71 @@ TEST(Places, TheFieldOfViewIsOfTheShorterSide) {
   }
 }
 
+TEST(Places, ACropWindowHoldsTheBitsOfTheWholeImage) {
+  SceneDesc scene = empty_scene();
+  scene.film = {48, 40};
+  scene.materials = {lambert("grey", Float(0.5))};
+  scene.shapes = {sphere({0, 0, 0}, 1, "grey")};
+  scene.lights = {sky(1)};
+  const Image whole = render_scene(scene, 2).image;
+  scene.film.crop = CropWindow{11, 7, 21, 19};
+  const Image part = render_scene(scene, 2).image;
+  ASSERT_EQ(part.width, 21);
+  ASSERT_EQ(part.height, 19);
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) {
+      for (std::size_t c = 0; c < part.channels.size(); ++c) {
+        ASSERT_EQ(part.at(x, y, c), whole.at(11 + x, 7 + y, c)) << x << ' ' << y << ' ' << part.channels[c];
+      }
+    }
+  }
+}
+
+TEST(Places, AnOrthographicCameraShowsAllDistancesAtOneSize) {
+  // Two emitters of radius 0.5 at distances 4 and 40, 1.5 to the left and to the right of the view.
+  SceneDesc scene = empty_scene();
+  scene.film = {64, 64};
+  scene.camera = {.origin = {0, -10, 0},
+                  .target = {0, 0, 0},
+                  .up = {0, 0, 1},
+                  .projection = Projection::kOrthographic,
+                  .view_size = 4};
+  scene.materials = {lambert("black", Float(0))};
+  scene.shapes = {emitting(sphere({Float(-1.5) / 2, -6, 0}, Float(0.5), "black"), Float(1)),
+                  emitting(sphere({Float(1.5) / 2, 30, 0}, Float(0.5), "black"), Float(1))};
+  const Image image = render_scene(scene, 16).image;
+  std::array<double, 2> area{};
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) area[x < 32 ? 0 : 1] += double(image.at(x, y, 1)) > 0.5 ? 1 : 0;
+  }
+  const double expected = kPi64 * sqr(0.5 * 64 / 4);  // pixels
+  EXPECT_NEAR(area[0], expected, 0.05 * expected);
+  EXPECT_NEAR(area[1], expected, 0.05 * expected);
+}
+
+TEST(Places, ALensShowsSharpWhatLiesAtItsFocusAndBlursTheRestByItsCone) {
+  const CameraDesc lens{.origin = {0, 0, 0},
+                        .target = {0, 10, 0},
+                        .up = {0, 0, 1},
+                        .fov_deg = 40,
+                        .lens_radius = Float(0.25),
+                        .focus_distance = 5};
+  const Camera camera(lens, {64, 64});
+  for (const Vec2 position : {Vec2{32, 32}, Vec2{3, 50}, Vec2{60, 10}}) {
+    const Ray central = camera.ray(position);
+    const Vec3 focus = central.origin + central.direction * (5 / central.direction.y);
+    for (const Vec2 on_disk : {Vec2{1, 0}, Vec2{0, -1}, Vec2{Float(0.3), Float(0.6)}}) {
+      const Ray ray = camera.ray(position, on_disk);
+      const Vec3 at_focus = ray.origin + ray.direction * (5 / ray.direction.y);
+      EXPECT_NEAR(length(at_focus - focus), 0, 1e-5);
+      // Twice as far the cone is as wide as the lens again.
+      const Vec3 beyond = ray.origin + ray.direction * (10 / ray.direction.y);
+      const Vec3 central_beyond = central.direction * (10 / central.direction.y);
+      EXPECT_NEAR(length(beyond - central_beyond), 0.25 * std::hypot(on_disk.x, on_disk.y), 1e-5);
+    }
+  }
+}
+
 TEST(Places, AnEnvironmentImageIsNotMirrored) {
   // One bright texel in the upper half, a little right of the middle: looking along +x with z up it must
   // appear up and to the right; its direction is phi = -(8.5 / 64) turns... from u = 1/2 - phi / 2π.

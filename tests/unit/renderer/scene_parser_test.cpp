@@ -103,6 +103,35 @@ TEST(SceneParser, ReadsEverySection) {
   EXPECT_EQ(std::get<EnvironmentDesc>(scene.lights[2]).scale, Float(2));
 }
 
+TEST(SceneParser, ReadsEveryCamera) {
+  const auto camera = [](const std::string& rest) {
+    return parse(R"({"camera": {"origin": [0, 0, 5], "target": [0, 0, 0])" + rest + "}}").camera;
+  };
+  EXPECT_EQ(camera("").projection, Projection::kPerspective);
+  EXPECT_EQ(camera("").lens_radius, Float(0));
+  const CameraDesc lens = camera(R"(, "type": "thin_lens", "lens_radius": 0.25, "focus_distance": 3)");
+  EXPECT_EQ(lens.projection, Projection::kPerspective);
+  EXPECT_EQ(lens.lens_radius, Float(0.25));
+  EXPECT_EQ(lens.focus_distance, Float(3));
+  const CameraDesc parallel = camera(R"(, "type": "orthographic", "view_size": 7)");
+  EXPECT_EQ(parallel.projection, Projection::kOrthographic);
+  EXPECT_EQ(parallel.view_size, Float(7));
+}
+
+TEST(SceneParser, ACropWindowLiesWithinTheImage) {
+  const FilmDesc film =
+      parse(scene_with(R"("film": {"width": 64, "height": 48, "crop": [3, 5, 61, 7]})")).film;
+  ASSERT_TRUE(film.crop.has_value());
+  EXPECT_EQ(film.window().x, 3);
+  EXPECT_EQ(film.window().y, 5);
+  EXPECT_EQ(film.window().width, 61);
+  EXPECT_EQ(film.window().height, 7);
+  expect_problem(R"("film": {"width": 64, "height": 48, "crop": [3, 5, 62, 7]})", "/film/crop/2");
+  expect_problem(R"("film": {"width": 64, "height": 48, "crop": [64, 5, 1, 7]})", "/film/crop/0");
+  expect_problem(R"("film": {"width": 64, "height": 48, "crop": [0, 0, 8]})",
+                 "expected [x, y, width, height]");
+}
+
 TEST(SceneParser, HashesTheText) {
   // The SHA-256 of a file is what sha256sum prints; FIPS 180-4 vectors are tested with the function.
   const std::string text = scene_with("");

@@ -68,7 +68,8 @@ Json everything() {
   return Json::parse(R"json({
     "$schema": "scene.schema.json",
     "spectrum": {"range_nm": [380, 780], "sampling": "uniform"},
-    "camera": {"type": "pinhole", "origin": [0, -5, 2], "target": [0, 0, 1], "up": [0, 0, 1], "fov_deg": 30},
+    "camera": {"type": "thin_lens", "origin": [0, -5, 2], "target": [0, 0, 1], "up": [0, 0, 1], "fov_deg": 30,
+               "lens_radius": 0.1, "focus_distance": 4},
     "film": {"width": 64, "height": 48},
     "sampler": {"spp": 8, "seed": 3},
     "integrator": {"max_depth": 5, "roulette_depth": 3, "next_event": true},
@@ -210,6 +211,19 @@ TEST(SceneSchema, TakesTheSceneWithEverythingAsTheParserDoes) {
   EXPECT_TRUE(SchemaFile().accepts(everything()));
   for (const Diagnostic& d : parser_problems(everything().dump())) {
     ADD_FAILURE() << d.text();
+  }
+}
+
+TEST(SceneSchema, AgreesWithTheParserOnTheKeysOfEachCamera) {
+  const SchemaFile schema;
+  for (const char* type : {"pinhole", "thin_lens", "orthographic"}) {
+    for (const char* key : {"fov_deg", "lens_radius", "focus_distance", "view_size"}) {
+      Json scene = everything();
+      scene["camera"] = {{"type", type}, {"origin", {0, -5, 2}}, {"target", {0, 0, 1}}, {"up", {0, 0, 1}}};
+      if (type == std::string("thin_lens")) scene["camera"]["lens_radius"] = 0.5;
+      scene["camera"][key] = 1;
+      expect_agreement(schema, scene, std::string(type) + " with " + key);
+    }
   }
 }
 
