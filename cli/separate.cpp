@@ -14,6 +14,7 @@
 #include "cli/grid_option.h"
 #include "cli/output.h"
 #include "cli/separation_cache.h"
+#include "core/base/cost.h"
 #include "core/base/file.h"
 #include "materials/separated_tables.h"
 #include "separation/choose_model.h"
@@ -77,6 +78,14 @@ SeparationModel richest_of(const Arguments& arguments, const SeparatedTables& ta
   return choice.model;
 }
 
+/// Writes OUT.sep; a line about what it holds.
+std::string store(const SeparatedTables& tables, const Arguments& arguments) {
+  const SeparationModel richest = richest_of(arguments, tables);
+  const Stored stored = arguments.full ? store_full(tables) : store_compact(tables, arguments, richest);
+  stored.file.write(arguments.output);
+  return stored.summary;
+}
+
 ExitCode separate_command(const Arguments& arguments) {
   require_folder_of(arguments.output);
   SeparationOptions options;
@@ -93,19 +102,20 @@ ExitCode separate_command(const Arguments& arguments) {
   options.threads = arguments.threads;
 
   SilentProgress progress;
-  const SeparationResult result = separate_file(arguments.input, options, progress);
+  SeparationResult result = separate_file(arguments.input, options, progress);
   fmt::print("{}: {}", arguments.input, result.report.full());
+  if (result.report.usable) {
+    std::string summary;
+    result.report.seconds_store = seconds_of([&] { summary = store(result.tables, arguments); });
+    fmt::print("wrote {}: {} bytes, {}\n", arguments.output, std::filesystem::file_size(arguments.output),
+               summary);
+  }
+  result.report.peak_memory_bytes = peak_memory_bytes();
+  fmt::print("{}", result.report.costs());
   if (!arguments.report.empty()) {
     write_file_atomically(arguments.report, std::string_view(result.report.json() + "\n"));
   }
-  if (!result.report.usable) return ExitCode::kDiffers;
-  const SeparationModel richest = richest_of(arguments, result.tables);
-  const Stored stored =
-      arguments.full ? store_full(result.tables) : store_compact(result.tables, arguments, richest);
-  stored.file.write(arguments.output);
-  fmt::print("wrote {}: {} bytes, {}\n", arguments.output, std::filesystem::file_size(arguments.output),
-             stored.summary);
-  return ExitCode::kSuccess;
+  return result.report.usable ? ExitCode::kSuccess : ExitCode::kDiffers;
 }
 
 }  // namespace

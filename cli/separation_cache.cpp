@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include "core/base/cost.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "materials/measured_brdf.h"
@@ -46,8 +47,11 @@ bool is_readable(const std::filesystem::path& file) {
 SeparationResult separate_bytes(std::span<const std::byte> bytes, const std::string& sha256,
                                 const std::filesystem::path& bsdf, const SeparationOptions& options,
                                 Progress& progress) {
-  const MeasuredBrdf measured(measured_from_bytes(bytes, bsdf.string()));
-  SeparationResult result = separate(measured, options, progress);
+  std::optional<MeasuredBrdf> measured;
+  const double seconds_read =
+      seconds_of([&] { measured.emplace(measured_from_bytes(bytes, bsdf.string())); });
+  SeparationResult result = separate(*measured, options, progress);
+  result.report.seconds_read = seconds_read;
   result.tables.source_name = bsdf.filename().string();
   result.tables.source_sha256 = sha256;
   return result;
@@ -57,8 +61,15 @@ SeparationResult separate_bytes(std::span<const std::byte> bytes, const std::str
 
 SeparationResult separate_file(const std::filesystem::path& bsdf, const SeparationOptions& options,
                                Progress& progress) {
-  const std::vector<std::byte> bytes = read_file(bsdf);
-  return separate_bytes(bytes, sha256_hex(bytes), bsdf, options, progress);
+  std::vector<std::byte> bytes;
+  std::string sha256;
+  const double seconds_read = seconds_of([&] {
+    bytes = read_file(bsdf);
+    sha256 = sha256_hex(bytes);
+  });
+  SeparationResult result = separate_bytes(bytes, sha256, bsdf, options, progress);
+  result.report.seconds_read += seconds_read;
+  return result;
 }
 
 CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std::filesystem::path& folder,

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "materials/half_difference.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/math/angles.h"
 #include "core/math/math.h"
 
 namespace spectrace {
@@ -15,37 +17,46 @@ struct Triple {
 };
 Triple sum(Vec3 a, Vec3 b) { return {double(a.x) + b.x, double(a.y) + b.y, double(a.z) + b.z}; }
 Triple difference(Vec3 a, Vec3 b) { return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z}; }
-double norm(const Triple& a) { return std::hypot(a.x, a.y, a.z); }
+double norm(const Triple& a) { return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
+/// Of the first quadrant, mirrored to the second where `x` is negative; without a branch, whose outcome would
+/// be as random as the directions.
+double into_quadrant(double angle, double x) { return kPi64 / 2 - std::copysign(kPi64 / 2 - angle, x); }
 Vec3 to_vec3(const Triple& a) { return {Float(a.x), Float(a.y), Float(a.z)}; }
-
-/// Azimuths that differ by π are the same pair with wi and wo swapped. `phi` in [-π, π].
-void reduce_by_reciprocity(double phi, HalfDifference& out) {
-  out.is_swapped = phi < 0 || phi >= kPi64;
-  out.phi_d = phi < 0 ? phi + kPi64 : phi;
-  if (out.phi_d < kPi64) return;
-  // π itself is 0 of the swapped pair; what rounding lifts to π is 0 of the pair as it is.
-  out.phi_d = 0;
-  out.is_swapped = phi >= kPi64;
-}
 
 }  // namespace
 
-HalfDifference to_half_difference(Vec3 wo, Vec3 wi) {
+double theta_of(Vec3 w) {
+  const double xy = std::sqrt(double(w.x) * w.x + double(w.y) * w.y);
+  return first_quadrant_angles(DoublePair{xy, 0}, DoublePair{std::max(double(w.z), 0.0), 0})[0];
+}
+
+PairGeometry geometry_of(Vec3 wo, Vec3 wi) {
   const Triple h = sum(wo, wi), d = difference(wi, wo);
-  const double h_norm = norm(h), d_norm = norm(d);
+  const double h_norm = norm(h), h_xy2 = h.x * h.x + h.y * h.y, h_xy = std::sqrt(h_xy2);
+  // d in the frame around h, whose first axis points down the meridian and whose second along the parallel:
+  // both times |h| |h_xy|, which spares the divisions.
+  const double along_t = (d.x * h.x + d.y * h.y) * h.z - d.z * h_xy2;
+  const double along_b = (d.y * h.x - d.x * h.y) * h_norm;
+  const double cos_h = wo.x * h.x + wo.y * h.y,
+               sin_h = wo.x * h.y - wo.y * h.x;  // of phi_h, times |o_xy| |h_xy|
+  // 1 - h.z / |h| would lose all digits near the pole.
+  const double z_h = h_norm > 0 ? h_xy2 / (h_norm * (h_norm + h.z)) : 0;
   // The angle between the two is 2 theta_d; |wi - wo| = 2 sin theta_d, |wi + wo| = 2 cos theta_d.
-  HalfDifference out{.theta_h = 0, .theta_d = std::atan2(d_norm, h_norm), .phi_d = 0};
-  const double h_xy = std::hypot(h.x, h.y);
-  if (h_norm == 0) return out;
-  out.theta_h = std::atan2(h_xy, h.z);
-  if (h_xy == 0 || d_norm == 0) return out;
-  // The frame around h: `t` points down the meridian, `b` along the parallel.
-  const double cos_phi = h.x / h_xy, sin_phi = h.y / h_xy;
-  const double cos_theta = h.z / h_norm, sin_theta = h_xy / h_norm;
-  const double along_t = d.x * cos_theta * cos_phi + d.y * cos_theta * sin_phi - d.z * sin_theta;
-  const double along_b = -d.x * sin_phi + d.y * cos_phi;
-  reduce_by_reciprocity(std::atan2(along_b, along_t), out);
-  return out;
+  const DoublePair theta_h_d =
+      first_quadrant_angles(DoublePair{h_xy, norm(d)}, DoublePair{std::max(h.z, 0.0), h_norm});
+  const DoublePair phi_d_h = first_quadrant_angles(DoublePair{std::abs(along_b), std::abs(sin_h)},
+                                                   DoublePair{std::abs(along_t), std::abs(cos_h)});
+  HalfDifference angles{.theta_h = theta_h_d[0], .theta_d = theta_h_d[1]};
+  // Azimuths that differ by π are the same pair with wi and wo swapped; what rounds to π is 0 of the other
+  // pair.
+  const double phi_d = into_quadrant(phi_d_h[0], along_t * along_b);
+  angles.phi_d = phi_d < kPi64 ? phi_d : 0;
+  angles.is_swapped = angles.phi_d == 0 ? along_t < 0 : along_b < 0;
+  return {.angles = angles,
+          .cos_d = h_norm / 2,
+          .z_h = z_h,
+          .phi_h = into_quadrant(phi_d_h[1], cos_h),
+          .theta_o = theta_of(wo)};
 }
 
 DirectionPair from_half_difference(const HalfDifference& angles) {

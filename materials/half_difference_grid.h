@@ -12,16 +12,17 @@
 namespace spectrace {
 
 /// Where a direction pair falls in the grid: the one mapping all lookups use. Weights sum to 1.
+/// Made by locate() alone, which sets all of it: to clear it first would take as long.
 struct GridPoint {
-  std::array<std::uint32_t, 8> cell{};  ///< trilinear, index into [theta_h][theta_d][phi_d]
-  std::array<float, 8> cell_weight{};
+  std::array<std::uint32_t, 8> cell;  ///< trilinear, index into [theta_h][theta_d][phi_d]
+  std::array<float, 8> cell_weight;
   /// Sign, at the lower and the upper phi_d, of what is odd in the exchange of the directions: cell[2 i] and
   /// cell[2 i + 1]. The table holds half the circle; the other half is the exchanged pair.
-  std::array<float, 2> odd_sign{1, 1};
-  std::array<std::uint32_t, 4> angular{};  ///< bilinear, index into [theta_h][theta_d]
-  std::array<float, 4> angular_weight{};
-  std::array<std::uint32_t, 2> theta_d{};  ///< linear
-  std::array<float, 2> theta_d_weight{};
+  std::array<float, 2> odd_sign;
+  std::array<std::uint32_t, 4> angular;  ///< bilinear, index into [theta_h][theta_d]
+  std::array<float, 4> angular_weight;
+  std::array<std::uint32_t, 2> theta_d;  ///< linear
+  std::array<float, 2> theta_d_weight;
 };
 
 /// The table X and everything on its grid: [theta_h][theta_d][phi_d], nodes at theta_h(i) (paper: 90 of

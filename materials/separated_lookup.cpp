@@ -7,15 +7,6 @@
 namespace spectrace {
 namespace {
 
-template <typename Table>
-Float trilinear(const Table& table, const GridPoint& point) {
-  Float sum = 0;
-  for (std::size_t i = 0; i < point.cell.size(); ++i) {
-    sum += point.cell_weight[i] * Float(table[point.cell[i]]);
-  }
-  return sum;
-}
-
 template <typename Values>
 bool any_set(const Values& values) {
   return std::any_of(values.begin(), values.end(), [](auto x) { return x != 0; });
@@ -23,6 +14,29 @@ bool any_set(const Values& values) {
 
 void add_row(const std::vector<float>& table, std::size_t at, float weight, std::vector<double>& row) {
   for (std::size_t k = 0; k < row.size(); ++k) row[k] += double(weight) * double(table[at * row.size() + k]);
+}
+
+/// Σ over the terms of their weight, blended between nodes of `table` [node][rank], times their basis.
+template <std::size_t N>
+SampledSpectrum product_at(const CompactTables& tables, const std::vector<float>& table,
+                           const std::array<std::uint32_t, N>& nodes, const std::array<float, N>& weights,
+                           const SpectralAxis::Lookup& lookup) {
+  const std::size_t rank = tables.rank, n = tables.axis.size();
+  std::array<const float*, N> terms;
+  for (std::size_t i = 0; i < N; ++i) terms[i] = &table[nodes[i] * rank];
+  const float* basis = tables.basis.data();
+  SampledSpectrum s;
+  std::array<float, 3> rgb{};  // linear: three channels added up first are cheaper than kLanes
+  for (std::size_t k = 0; k < rank; ++k, basis += n) {
+    float weight = 0;
+    for (std::size_t i = 0; i < N; ++i) weight += weights[i] * terms[i][k];
+    if (lookup.is_rgb) {
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] += weight * basis[c];
+    } else {
+      s += lookup.apply(basis) * Float(weight);
+    }
+  }
+  return lookup.is_rgb ? lookup.apply(rgb.data()) : s;
 }
 
 using Weights = std::array<float, kMaxSpectralRank>;
@@ -74,20 +88,6 @@ bool has_specular(const CompactTables& tables, SeparationModel model) {
                                                                                     : tables.s_diffraction);
 }
 
-Float specular_at(const SeparatedTables& tables, const GridPoint& point) {
-  return trilinear(tables.rho_s, point);
-}
-Float specular_at(const CompactTables& tables, const GridPoint& point) {
-  return trilinear(tables.rho_s, point);
-}
-
-Float diffuse_shape_at(const SeparatedTables& tables, const GridPoint& point) {
-  return tables.diffuse_shape.empty() ? Float(1) : trilinear(tables.diffuse_shape, point);
-}
-Float diffuse_shape_at(const CompactTables& tables, const GridPoint& point) {
-  return tables.diffuse_shape.empty() ? Float(1) : trilinear(tables.diffuse_shape, point) / 255;
-}
-
 SampledSpectrum spectral_factor(const SeparatedTables& tables, SeparationModel model, const GridPoint& point,
                                 const SpectralAxis::Lookup& lookup) {
   const std::size_t n = tables.axis.size();
@@ -108,13 +108,11 @@ SampledSpectrum spectral_factor(const SeparatedTables& tables, SeparationModel m
 SampledSpectrum spectral_factor(const CompactTables& tables, SeparationModel model, const GridPoint& point,
                                 const SpectralAxis::Lookup& lookup) {
   if (model == SeparationModel::kSun) return lookup.apply(tables.s_sun.data());
-  const Weights weights = weights_at(tables, model, point);
-  SampledSpectrum s;
-  for (std::size_t k = 0; k < tables.rank; ++k) {
-    s += lookup.apply(&tables.basis[k * tables.axis.size()]) * Float(weights[k]);
-  }
-  for (int lane = 0; lane < kLanes; ++lane) s[lane] = std::max(s[lane], Float(0));
-  return s;
+  const SampledSpectrum s =
+      model == SeparationModel::kFresnel
+          ? product_at(tables, tables.s_fresnel, point.theta_d, point.theta_d_weight, lookup)
+          : product_at(tables, tables.s_diffraction, point.angular, point.angular_weight, lookup);
+  return s.clamped_at_zero();
 }
 
 void spectral_row(const SeparatedTables& tables, SeparationModel model, const GridPoint& point,

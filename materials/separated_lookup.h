@@ -27,13 +27,45 @@ SeparationModel richest_model(const SeparatedSource& source);
 bool has_specular(const SeparatedTables& tables, SeparationModel model);
 bool has_specular(const CompactTables& tables, SeparationModel model);
 
+/// Has the processor fetch what the functions below will read at a point: a table's cells are rarely in the
+/// caches, and other work can go on meanwhile.
+template <typename Codes>
+void prefetch(const Codes& rho_s, const std::vector<float>& s_diffraction, std::size_t row_size,
+              const GridPoint& point) {
+  // Every other cell: its neighbour in phi_d lies beside it.
+  for (std::size_t i = 0; i < point.cell.size(); i += 2) __builtin_prefetch(&rho_s[point.cell[i]]);
+  if (s_diffraction.empty()) return;
+  for (const std::uint32_t at : point.angular) __builtin_prefetch(&s_diffraction[at * row_size]);
+}
+inline void prefetch(const SeparatedTables& tables, const GridPoint& point) {
+  prefetch(tables.rho_s, tables.s_diffraction, tables.axis.size(), point);
+}
+inline void prefetch(const CompactTables& tables, const GridPoint& point) {
+  prefetch(tables.rho_s.code, tables.s_diffraction, tables.rank, point);
+}
+
+template <typename Table>
+Float trilinear(const Table& table, const GridPoint& point) {
+  Float sum = 0;
+  for (std::size_t i = 0; i < point.cell.size(); ++i) {
+    sum += point.cell_weight[i] * Float(table[point.cell[i]]);
+  }
+  return sum;
+}
+
 /// ρ_s (cosθi + cosθo) [1/sr] at a point of the grid.
-Float specular_at(const SeparatedTables& tables, const GridPoint& point);
-Float specular_at(const CompactTables& tables, const GridPoint& point);
+template <typename Tables>
+Float specular_at(const Tables& tables, const GridPoint& point) {
+  return trilinear(tables.rho_s, point);
+}
 
 /// Share of the Lambert lobe that is there, in [0, 1].
-Float diffuse_shape_at(const SeparatedTables& tables, const GridPoint& point);
-Float diffuse_shape_at(const CompactTables& tables, const GridPoint& point);
+inline Float diffuse_shape_at(const SeparatedTables& tables, const GridPoint& point) {
+  return tables.diffuse_shape.empty() ? Float(1) : trilinear(tables.diffuse_shape, point);
+}
+inline Float diffuse_shape_at(const CompactTables& tables, const GridPoint& point) {
+  return tables.diffuse_shape.empty() ? Float(1) : trilinear(tables.diffuse_shape, point) / 255;
+}
 
 /// s of the model at a point, at a path's wavelengths; that of kResidual is that of kDiffraction. >= 0.
 SampledSpectrum spectral_factor(const SeparatedTables& tables, SeparationModel model, const GridPoint& point,

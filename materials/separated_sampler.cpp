@@ -28,9 +28,20 @@ std::array<Float, kThetaNodesDeg.size()> theta_nodes_rad() {
   return nodes;
 }
 
+/// The node at or below each half degree, and never the last one: all nodes lie on half degrees, so that no
+/// search is needed.
+constexpr auto kNodeAtHalfDegree = [] {
+  std::array<std::uint8_t, 181> lower{};
+  for (std::size_t i = 0, node = 0; i < lower.size(); ++i) {
+    if (node + 2 < kThetaNodesDeg.size() && kThetaNodesDeg[node + 1] * 2 <= Float(i)) ++node;
+    lower[i] = static_cast<std::uint8_t>(node);
+  }
+  return lower;
+}();
+
 /// z = 1 - cosθ_h as a function of u, its inverse, and dz/du.
 Float z_of_u(Float u) { return std::min(kLogFloor * std::expm1(kLogRange * u), Float(1)); }
-Float u_of_z(Float z) { return std::min(std::log1p(z / kLogFloor) / kLogRange, Float(1)); }
+Float u_of_z(Float z) { return std::min(std::log(1 + z * (1 / kLogFloor)) * (1 / kLogRange), Float(1)); }
 Float dz_du(Float z) { return kLogRange * (z + kLogFloor); }
 
 /// Half vector of azimuth phi relative to wo's plane of incidence, which is the xz-plane.
@@ -40,8 +51,6 @@ Vec3 half_vector(Float z, Float phi) {
 }
 
 Vec3 reflect(Vec3 wo, Vec3 h) { return 2 * dot(wo, h) * h - wo; }
-
-Float theta_of(Vec3 wo) { return std::atan2(std::hypot(wo.x, wo.y), wo.z); }
 
 }  // namespace
 
@@ -88,13 +97,21 @@ void SeparatedSampler::tabulate(const Tables& tables, SeparationModel model) {
     std::copy(sum.begin(), sum.end(), albedo_.begin() + std::ptrdiff_t(t * axis_size_));
   }
   warp_ = Warp2D(theta_o, kNoSecondParameter, kNodesV, kNodesU, density, true);
+  density_.reserve(density.size());
+  for (const Float theta : theta_o) {
+    for (int i = 0; i < kNodesU; ++i) {
+      for (int j = 0; j < kNodesV; ++j) {
+        density_.push_back(warp_.eval({double(j) / (kNodesV - 1), double(i) / (kNodesU - 1)}, {.p0 = theta}));
+      }
+    }
+  }
 }
 
-std::optional<Vec3> SeparatedSampler::sample(Vec3 wo, Vec2 u) const {
+std::optional<Vec3> SeparatedSampler::sample(Vec3 wo, Elevation at, Vec2 u) const {
   // The lobe is even in the azimuth: the first bit of u.x picks the side.
   const Float side = u.x < Float(0.5) ? Float(1) : Float(-1);
   u.x = std::min(u.x < Float(0.5) ? 2 * u.x : 2 * u.x - 1, Float(1));
-  const Vec2 position = warp_.sample(u, {.p0 = theta_of(wo)}).position;
+  const Vec2 position = warp_.sample(u, slices(at)).position;
   const Vec3 local = half_vector(z_of_u(position.y), side * kPi * position.x);
 
   const Float sin_o = std::hypot(wo.x, wo.y);
@@ -106,27 +123,45 @@ std::optional<Vec3> SeparatedSampler::sample(Vec3 wo, Vec2 u) const {
   return wi;
 }
 
-Float SeparatedSampler::pdf(Vec3 wo, Vec3 wi) const {
-  const Vec3 sum = wo + wi;
-  const Float norm = length(sum);
-  if (!(norm > 0)) return 0;
-  const Vec3 h = sum / norm;
-  const Float cos_d = norm / 2;                         // |wo + wi| = 2 cosθ_d
-  const Float z = (h.x * h.x + h.y * h.y) / (1 + h.z);  // 1 - h.z loses all digits near the pole
-  // atan2 keeps its digits where acos of the cosine would not; (0, 0) gives 0.
-  const Float phi = std::atan2(std::abs(wo.x * h.y - wo.y * h.x), wo.x * h.x + wo.y * h.y);
-  const Float density = warp_.eval({phi / kPi, u_of_z(z)}, {.p0 = theta_of(wo)});
-  return density / (2 * kPi * dz_du(z)) / (4 * cos_d);
+SeparatedSampler::Elevation SeparatedSampler::elevation(double theta_o_rad) {
+  const Float degrees = radians_to_degrees(static_cast<Float>(theta_o_rad));
+  const std::size_t half_degrees =
+      std::min(static_cast<std::size_t>(2 * degrees), kNodeAtHalfDegree.size() - 1);
+  const std::uint32_t lower = kNodeAtHalfDegree[half_degrees];
+  const Float first = kThetaNodesDeg[lower], step = kThetaNodesDeg[lower + 1] - first;
+  return {.lower = lower, .fraction = std::clamp((degrees - first) / step, Float(0), Float(1))};
 }
 
-SampledSpectrum SeparatedSampler::albedo(Float cos_theta_o, const SpectralAxis::Lookup& lookup) const {
-  static const auto kTheta = theta_nodes_rad();
-  const Float theta = safe_acos(cos_theta_o);
-  const auto upper = std::upper_bound(kTheta.begin() + 1, kTheta.end() - 1, theta) - kTheta.begin();
-  const Float t =
-      std::clamp((theta - kTheta[upper - 1]) / (kTheta[upper] - kTheta[upper - 1]), Float(0), Float(1));
-  const float* row = &albedo_[std::size_t(upper) * axis_size_];
-  return (1 - t) * lookup.apply(row - axis_size_) + t * lookup.apply(row);
+Warp2D::Blend SeparatedSampler::slices(Elevation at) {
+  Warp2D::Blend blend;
+  blend.slice = {at.lower, at.lower + 1};
+  blend.weight = {1 - at.fraction, at.fraction};
+  blend.count = 2;
+  return blend;
+}
+
+/// warp_.eval({v, u}, slices(at)) to float rounding; u and v in [0, 1].
+Float SeparatedSampler::density(Float u, Float v, Elevation at) const {
+  const Float y = u * (kNodesU - 1), x = v * (kNodesV - 1);
+  const int i = std::min(static_cast<int>(y), kNodesU - 2), j = std::min(static_cast<int>(x), kNodesV - 2);
+  const Float along_u = y - Float(i), along_v = x - Float(j);
+  const auto bilinear = [&](const Float* p) {
+    return lerp(lerp(p[0], p[1], along_v), lerp(p[kNodesV], p[kNodesV + 1], along_v), along_u);
+  };
+  const Float* const lower = &density_[(std::size_t(at.lower) * kNodesU + i) * kNodesV + j];
+  return lerp(bilinear(lower), bilinear(lower + kNodesU * kNodesV), at.fraction);
+}
+
+Float SeparatedSampler::pdf(const PairGeometry& pair, Elevation at) const {
+  const auto z = static_cast<Float>(pair.z_h), v = static_cast<Float>(pair.phi_h) * kInvPi;
+  // dω_i = 4 cosθ_d dω_h, and the density is that of one side: φ in [0, π] stands for both.
+  return safe_div(density(u_of_z(z), std::min(v, Float(1)), at),
+                  8 * kPi * dz_du(z) * static_cast<Float>(pair.cos_d));
+}
+
+SampledSpectrum SeparatedSampler::albedo(Elevation at, const SpectralAxis::Lookup& lookup) const {
+  const float* const row = &albedo_[at.lower * axis_size_];
+  return (1 - at.fraction) * lookup.apply(row) + at.fraction * lookup.apply(row + axis_size_);
 }
 
 }  // namespace spectrace

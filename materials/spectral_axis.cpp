@@ -42,11 +42,15 @@ SpectralAxis::Lookup SpectralAxis::lookup(const SampledWavelengths& lambda) cons
   Lookup out;
   out.is_rgb = is_rgb_;
   if (is_rgb_) {
-    for (int lane = 0; lane < kLanes; ++lane) out.rgb[lane] = rgb_basis(lambda.lambda_nm(lane));
+    out.rgb = rgb_basis(lambda);
     return out;
   }
   const std::size_t n = lambda_nm_.size();
-  if (n < 2) return out;  // one wavelength: grey
+  if (n < 2) {  // one wavelength: grey
+    out.index.fill(0);
+    out.fraction.fill(0);
+    return out;
+  }
   out.upper = 1;
   const float* const first = lambda_nm_.data();
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -61,19 +65,6 @@ SpectralAxis::Lookup SpectralAxis::lookup(const SampledWavelengths& lambda) cons
     }
     out.index[lane] = static_cast<std::uint32_t>(i);
     out.fraction[lane] = (Float(wanted) - first[i]) / (Float(first[i + 1]) - first[i]);
-  }
-  return out;
-}
-
-SampledSpectrum SpectralAxis::Lookup::apply(const float* row) const {
-  SampledSpectrum out;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    if (is_rgb) {
-      out[lane] = rgb[lane][0] * row[0] + rgb[lane][1] * row[1] + rgb[lane][2] * row[2];
-    } else {
-      const float* const at = row + index[lane];
-      out[lane] = (1 - fraction[lane]) * at[0] + fraction[lane] * at[upper];
-    }
   }
   return out;
 }

@@ -28,13 +28,21 @@ class SpectralAxis {
 
   /// Where each lane falls; computed once a lookup, then applied to any number of table rows.
   struct Lookup {
-    std::array<std::array<Float, 3>, kLanes> rgb{};  // RGB: the basis at each lane
-    std::array<std::uint32_t, kLanes> index{};       // wavelengths: the lower neighbour
-    std::array<Float, kLanes> fraction{};            // and how far towards the upper one
-    std::uint32_t upper = 0;                         // its distance: 1, or 0 for a single wavelength
+    std::array<SampledSpectrum, 3> rgb;       // only where is_rgb: the basis
+    std::array<std::uint32_t, kLanes> index;  // only elsewhere: the lower neighbour
+    std::array<Float, kLanes> fraction;       // and how far towards the upper one
+    std::uint32_t upper = 0;                  // its distance: 1, or 0 for a single wavelength
     bool is_rgb = false;
     /// Σ over the axis of row[k] times this lane's weights. `row` has size() values.
-    [[nodiscard]] SampledSpectrum apply(const float* row) const;
+    [[nodiscard]] SampledSpectrum apply(const float* row) const {
+      if (is_rgb) return rgb[0] * Float(row[0]) + rgb[1] * Float(row[1]) + rgb[2] * Float(row[2]);
+      SampledSpectrum out;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const float* const at = row + index[lane];
+        out[lane] = (1 - fraction[lane]) * at[0] + fraction[lane] * at[upper];
+      }
+      return out;
+    }
   };
   [[nodiscard]] Lookup lookup(const SampledWavelengths& lambda) const;
 

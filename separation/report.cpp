@@ -125,11 +125,15 @@ std::string SeparationReport::full() const {
   line("eqs. 19 and 20", options.residual == SpectralResidual::kWhole
                              ? "whole: they compare the whole BRDF, as eq. 18 does"
                              : "printed: they compare what the diffuse lobe leaves, clamped at 0");
-  line("seconds",
-       fmt::format(
-           "table {:.2f}, step 1 {:.2f}, step 2 {:.2f}, step 3 {:.2f}, residual {:.2f}, analytic {:.2f}",
-           seconds_table, seconds_step1, seconds_step2, seconds_step3, seconds_residual, seconds_analytic));
   return text;
+}
+
+std::string SeparationReport::costs() const {
+  return fmt::format(
+      "  {:<22}read {:.2f}, table {:.2f}, step 1 {:.2f}, step 2 {:.2f}, step 3 {:.2f}, analytic {:.2f}, "
+      "residual {:.2f}, store {:.2f}\n  {:<22}{:.0f} MB at most\n",
+      "seconds", seconds_read, seconds_table, seconds_step1, seconds_step2, seconds_step3, seconds_analytic,
+      seconds_residual, seconds_store, "memory", double(peak_memory_bytes) * 1e-6);
 }
 
 std::string SeparationReport::json(bool with_timings) const {
@@ -183,12 +187,16 @@ std::string SeparationReport::json(bool with_timings) const {
   if (with_timings) {
     json.key("seconds");
     json.begin_object();
+    json.member("read", seconds_read);
     json.member("table", seconds_table);
     json.member("step1", seconds_step1);
     json.member("step2", seconds_step2);
     json.member("step3", seconds_step3);
+    json.member("analytic", seconds_analytic);
     json.member("residual", seconds_residual);
+    json.member("store", seconds_store);
     json.end_object();
+    json.member("peak_memory_bytes", peak_memory_bytes);
   }
   json.end_object();
   return json.text();

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "core/base/cost.h"
 #include "core/base/error.h"
 #include "separation/analytic_fit.h"
 #include "separation/analytic_spectra.h"
@@ -22,14 +22,6 @@
 
 namespace spectrace {
 namespace {
-
-/// Runs `step` and returns how long it took [s].
-template <typename F>
-double seconds(const F& step) {
-  const auto start = std::chrono::steady_clock::now();
-  step();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void judge(SeparationReport& report, bool isotropic, bool converged) {
   if (!isotropic) {
@@ -119,7 +111,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   SeparationReport& report = result.report;
   CellTable table;
   progress.update("table", 0, 1);
-  report.seconds_table = seconds([&] { table = build_cell_table(measured, options); });
+  report.seconds_table = seconds_of([&] { table = build_cell_table(measured, options); });
   report.cells = table.counts.cells;
   report.below_horizon = table.counts.below_horizon;
   report.measured = table.counts.measured;
@@ -128,7 +120,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
 
   progress.update("analytic fit", 0, 1);
   AnalyticSolution analytic;
-  report.seconds_step1 = seconds([&] { analytic = fit_analytic(table, options); });
+  report.seconds_step1 = seconds_of([&] { analytic = fit_analytic(table, options); });
   report.fit = analytic.fit;
   report.matte = analytic.matte;
   report.step1_initial_cost = analytic.initial_cost;
@@ -140,7 +132,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
 
   const AnalyticFit achromatic = analytic.fit;
   std::vector<float> s_d;
-  report.seconds_step1 += seconds([&] {
+  report.seconds_step1 += seconds_of([&] {
     s_d = dark_colour(measured, table, analytic, options);
     const bool is_bounded =
         options.colour == DiffuseColour::kDark && options.diffuse == DiffuseForm::kLambert;
@@ -153,7 +145,8 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   report.dark_colour = !s_d.empty();
 
   SplitResult split;
-  report.seconds_step2 = seconds([&] { split = split_lobes(table, analytic.fit, analytic.matte, options); });
+  report.seconds_step2 =
+      seconds_of([&] { split = split_lobes(table, analytic.fit, analytic.matte, options); });
   report.albedo_d = split.albedo_d;
   report.step2_cost = split.cost;
   report.lambert_cost = split.lambert_cost;
@@ -161,11 +154,11 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
 
   SpectralFit spectra;
   report.seconds_step3 =
-      seconds([&] { spectra = fit_spectra(measured, table, split, s_d, options, progress); });
+      seconds_of([&] { spectra = fit_spectra(measured, table, split, s_d, options, progress); });
   store(std::move(spectra), std::move(split), result);
   if (options.analytic) {
     progress.update("analytic model", 0, 1);
-    report.seconds_analytic = seconds([&] {
+    report.seconds_analytic = seconds_of([&] {
       AnalyticSpectra spectra_fit = fit_analytic_spectra(measured, table, achromatic, options);
       result.tables.analytic = std::move(spectra_fit.parameters);
       report.rms_analytic = std::move(spectra_fit.rms);
@@ -176,7 +169,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   progress.update("residual", 0, 1);
   ResidualReport residual;
   report.seconds_residual =
-      seconds([&] { result.tables.residual = fit_residual(measured, result.tables, options, residual); });
+      seconds_of([&] { result.tables.residual = fit_residual(measured, result.tables, options, residual); });
   report.residual_explained = residual.explained;
   report.residual_clamped_share = residual.clamped_share;
 }

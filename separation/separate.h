@@ -102,6 +102,9 @@ struct SeparationReport {
   double residual_explained = 0;      ///< share of the squared residual that the terms explain, 0 where none
   double residual_clamped_share = 0;  ///< of their ratios, beyond what a byte holds
   double seconds_residual = 0, seconds_analytic = 0;
+  /// Reading the measurement; choosing the model, compacting and writing: of whoever does that.
+  double seconds_read = 0, seconds_store = 0;
+  std::size_t peak_memory_bytes = 0;  ///< of the whole process
   double seconds_table = 0, seconds_step1 = 0, seconds_step2 = 0, seconds_step3 = 0;
   std::size_t cells = 0, below_horizon = 0, measured = 0, extrapolated = 0, unmeasured = 0;  ///< of the grid
   std::size_t negative_values = 0;  ///< of the file, clamped to 0
@@ -110,6 +113,7 @@ struct SeparationReport {
 
   [[nodiscard]] std::string brief() const;  ///< one line
   [[nodiscard]] std::string full() const;   ///< a table for people
+  [[nodiscard]] std::string costs() const;  ///< two lines of it, of the time and memory it took
   /// Without timings the same input gives the same text, on any number of threads: what a `.sep` file stores.
   [[nodiscard]] std::string json(bool with_timings = true) const;
 };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/math/math.h"
 #include "core/spectra/rgb_uplift.h"
@@ -44,13 +45,39 @@ constexpr std::array<Float, kNodes> kBlue{
 };
 // clang-format on
 
+/// A cell between two nodes, and how far into it.
+struct Place {
+  std::int32_t cell = 0;
+  Float fraction = 0;
+};
+
+Place place(Float lambda_nm) {
+  constexpr Float kPerStep = 1 / kStepNm, kLast = kNodes - 1, kLastCell = kNodes - 2;
+  const Float position = std::min(std::max((lambda_nm - kFirstNm) * kPerStep, Float(0)), kLast);
+  const auto cell = static_cast<std::int32_t>(std::min(position, kLastCell));
+  return {cell, position - Float(cell)};
+}
+
+Float interpolate(const std::array<Float, kNodes>& table, Place at) {
+  const Float* const node = &table[static_cast<std::size_t>(at.cell)];
+  return lerp(node[0], node[1], at.fraction);
+}
+
 }  // namespace
 
 std::array<Float, 3> rgb_basis(Float lambda_nm) {
-  const Float position = std::clamp((lambda_nm - kFirstNm) / kStepNm, Float(0), Float(kNodes - 1));
-  const auto i = std::min(static_cast<std::size_t>(position), kNodes - 2);
-  const Float t = position - Float(i);
-  return {lerp(kRed[i], kRed[i + 1], t), lerp(kGreen[i], kGreen[i + 1], t), lerp(kBlue[i], kBlue[i + 1], t)};
+  const Place at = place(lambda_nm);
+  return {interpolate(kRed, at), interpolate(kGreen, at), interpolate(kBlue, at)};
+}
+
+std::array<SampledSpectrum, 3> rgb_basis(const SampledWavelengths& lambda) {
+  std::array<Place, kLanes> at;
+  for (int lane = 0; lane < kLanes; ++lane) at[lane] = place(lambda.lambda_nm(lane));
+  std::array<SampledSpectrum, 3> out;
+  for (int lane = 0; lane < kLanes; ++lane) out[0][lane] = interpolate(kRed, at[lane]);
+  for (int lane = 0; lane < kLanes; ++lane) out[1][lane] = interpolate(kGreen, at[lane]);
+  for (int lane = 0; lane < kLanes; ++lane) out[2][lane] = interpolate(kBlue, at[lane]);
+  return out;
 }
 
 }  // namespace spectrace

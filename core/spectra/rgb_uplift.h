@@ -22,5 +22,7 @@ SigmoidSpectrum uplift_factor(const Rgb& rgb);
 /// colours under D65 are the three sRGB primaries. rgb -> rgb[0] r + rgb[1] g + rgb[2] b is linear and
 /// unbounded: it commutes with interpolation and separation of RGB tables.
 std::array<Float, 3> rgb_basis(Float lambda_nm);
+/// The same at all wavelengths of a path.
+std::array<SampledSpectrum, 3> rgb_basis(const SampledWavelengths& lambda);
 
 }  // namespace spectrace

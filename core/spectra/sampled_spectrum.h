@@ -46,6 +46,11 @@ struct alignas(kLanes * sizeof(Float)) SampledSpectrum {
   friend constexpr SampledSpectrum operator/(SampledSpectrum a, Float s) { return a *= (1 / s); }
   friend constexpr bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
 
+  [[nodiscard]] constexpr SampledSpectrum clamped_at_zero() const {
+    SampledSpectrum out;
+    for (int i = 0; i < kLanes; ++i) out[i] = v[i] > 0 ? v[i] : Float(0);
+    return out;
+  }
   [[nodiscard]] constexpr Float max() const { return *std::max_element(v.begin(), v.end()); }
   [[nodiscard]] constexpr Float min() const { return *std::min_element(v.begin(), v.end()); }
   [[nodiscard]] constexpr Float average() const {

@@ -81,5 +81,24 @@ TEST(HalfDifference, IsDefinedWhereAzimuthsAreNot) {
   EXPECT_EQ(opposite.phi_d, 0);
 }
 
+TEST(HalfDifference, GeometryIsThatOfTheVectors) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 5000; ++i) {
+    const double theta_o = 0.05 + 1.5 * unit(random), theta_i = 0.05 + 1.5 * unit(random);
+    const double phi_o = 6 * unit(random), phi_i = 6 * unit(random);
+    const Vec3 wo = direction(theta_o, phi_o), wi = direction(theta_i, phi_i);
+    const PairGeometry pair = geometry_of(wo, wi);
+    const Vec3 h = normalize(wo + wi);
+    EXPECT_NEAR(pair.theta_o, theta_o, kAngleTolerance);
+    EXPECT_EQ(pair.theta_o, theta_of(wo));
+    EXPECT_NEAR(pair.cos_d, std::cos(pair.angles.theta_d), kAngleTolerance);
+    EXPECT_NEAR(pair.z_h, 1 - std::cos(pair.angles.theta_h), kAngleTolerance);
+    if (pair.angles.theta_h < 0.05) continue;  // the azimuth of h is not known well
+    const double phi = std::abs(std::remainder(std::atan2(double(h.y), double(h.x)) - phi_o, 2 * kPi64));
+    EXPECT_NEAR(pair.phi_h, phi, kAzimuthTolerance);
+  }
+}
+
 }  // namespace
 }  // namespace spectrace

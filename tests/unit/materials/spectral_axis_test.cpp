@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -61,9 +62,9 @@ TEST(SpectralAxis, InterpolatesEqualAndUnequalSteps) {
 
 TEST(SpectralAxis, OneWavelengthIsGrey) {
   const SpectralAxis axis = SpectralAxis::wavelengths({550});
-  const float row = 0.25f;
+  const std::array<float, 3> row{0.25f, 1, 1};  // of which only the first is its own
   for (const Float lambda : {Float(300), Float(550), Float(900)}) {
-    EXPECT_EQ(axis.lookup(at(lambda)).apply(&row), SampledSpectrum(Float(0.25)));
+    EXPECT_EQ(axis.lookup(at(lambda)).apply(row.data()), SampledSpectrum(Float(0.25)));
   }
 }
 
