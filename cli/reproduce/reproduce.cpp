@@ -24,6 +24,7 @@
 #include "cli/reproduce/study_summary.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/version.h"
 #include "core/image/metrics.h"
 #include "separation/choose_model.h"
 
@@ -43,9 +44,6 @@ constexpr const char* kExamples =
     "first and whose known lobes are a reference too. REPORT: index.html, results.csv, results.json,\n"
     "figure4.svg, sheets/, pictures/ (EXR), materials/ (a record each), scene/. A finished material is not\n"
     "done again. Exit code 3: a file is bad; 1: a fit is unusable. The rest is done all the same.";
-
-// To be raised whenever the same input would give other figures.
-constexpr int kStudyVersion = 1;
 
 struct Arguments {
   std::string folder, report, environment;
@@ -161,13 +159,25 @@ class Report {
         arguments_.study.quality, grid.n_theta_h, grid.n_theta_d, grid.n_phi_d);
   }
 
+  /// Of the program, the protocol and the bytes of all that goes in: figures of another build are made anew.
   [[nodiscard]] std::string key_of(const fs::path& file) const {
-    std::string text = fmt::format("study {} {} {} tolerance {}", kStudyVersion, protocol(),
+    std::string text = fmt::format("study {} {} {} {} tolerance {}", version(), commit(), protocol(),
                                    description_.sha256, arguments_.study.tolerance);
-    for (const fs::path& part : {file, fs::path(arguments_.environment)}) {
+    for (const fs::path& part : {file, fs::path(arguments_.environment), measurement_behind(file)}) {
       if (!part.empty()) text += ' ' + sha256_hex(read_file(part));
     }
     return sha256_hex(std::as_bytes(std::span(text)));
+  }
+
+  /// The file that a material of the program's own reads, if any.
+  [[nodiscard]] static fs::path measurement_behind(const fs::path& file) {
+    if (file.extension() != ".json") return {};
+    return std::visit(
+        [](const auto& kind) {
+          if constexpr (requires { kind.file; }) return kind.file;
+          return fs::path();
+        },
+        load_material(file).kind);
   }
 
   [[nodiscard]] fs::path record_file(const std::string& name) const {
@@ -177,9 +187,13 @@ class Report {
   [[nodiscard]] std::optional<StudyRecord> finished(const fs::path& file, const std::string& name) const {
     std::error_code absent;
     if (!fs::exists(record_file(name), absent)) return std::nullopt;
-    std::optional<StudyRecord> record = read_record(record_file(name), key_of(file));
-    const bool has_sheet = fs::exists(root_ / "sheets" / (name + ".png"), absent);
-    return record && (has_sheet || record->status == "unusable") ? record : std::nullopt;
+    try {
+      std::optional<StudyRecord> record = read_record(record_file(name), key_of(file));
+      const bool has_sheet = fs::exists(root_ / "sheets" / (name + ".png"), absent);
+      return record && (has_sheet || record->status == "unusable") ? record : std::nullopt;
+    } catch (const InputError&) {
+      return std::nullopt;  // unreadable by now: study() says so
+    }
   }
 
   StudyRecord study(const fs::path& file, const std::string& name, const std::function<void(double)>& step) {

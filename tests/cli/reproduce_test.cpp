@@ -79,7 +79,11 @@ TEST_F(Reproduce, ReportsOnGoodFilesAndNamesTheBadOne) {
   const ProgramResult other = reproduce({"--seed", "7"});
   EXPECT_EQ(other.exit_code, 0) << other.errors;
   EXPECT_EQ(other.errors.find("done before"), std::string::npos) << other.errors;
-  EXPECT_NE(report("results.csv"), csv);
+  const auto psnr_of_sun = [](const std::string& text) {
+    const std::string begin = "paint,raw,sun,";
+    return text.substr(text.find(begin), text.find(',', text.find(begin) + begin.size()) - text.find(begin));
+  };
+  EXPECT_NE(psnr_of_sun(report("results.csv")), psnr_of_sun(csv));
 }
 
 TEST_F(Reproduce, FindsTheSameFiguresOnAnyNumberOfThreads) {
