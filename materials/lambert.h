@@ -19,6 +19,19 @@ struct Lambert {
 /// Directions in proportion to cosθ / π: Malley's method over a concentric disk (Shirley & Chiu 1997).
 [[nodiscard]] Vec3 sample_cosine_hemisphere(Vec2 u);
 
+/// For a BSDF that is compared with others rather than rendered: its value in a direction drawn by the
+/// cosine.
+template <typename B>
+[[nodiscard]] std::optional<BsdfSample> sample_by_cosine(const B& bsdf, Vec3 wo, const BsdfRandom& u,
+                                                         const ShadingPoint& at) {
+  if (!(wo.z > 0)) return std::nullopt;
+  const Vec3 wi = sample_cosine_hemisphere(u.direction);
+  const BsdfValue value = bsdf.evaluate(wo, wi, at);
+  if (!(value.pdf > 0)) return std::nullopt;
+  return BsdfSample{
+      .wi = wi, .weight = value.value_cos / value.pdf, .pdf = value.pdf, .lobe = Lobe::kSpecular};
+}
+
 static_assert(Bsdf<Lambert>);
 
 }  // namespace spectrace

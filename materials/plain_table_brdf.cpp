@@ -61,12 +61,7 @@ LobeValues PlainTableBrdf::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& 
 }
 
 std::optional<BsdfSample> PlainTableBrdf::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
-  if (!(wo.z > 0)) return std::nullopt;
-  const Vec3 wi = sample_cosine_hemisphere(u.direction);
-  const BsdfValue value = evaluate(wo, wi, at);
-  if (!(value.pdf > 0)) return std::nullopt;
-  return BsdfSample{
-      .wi = wi, .weight = value.value_cos / value.pdf, .pdf = value.pdf, .lobe = Lobe::kSpecular};
+  return sample_by_cosine(*this, wo, u, at);
 }
 
 }  // namespace spectrace

@@ -269,7 +269,9 @@ FreeFresnelFit fit_free_fresnel(const CellTable& table, double epsilon, const An
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  return FreeFresnelCost::fit_of(x.data(), n_d);
+  FreeFresnelFit fit = FreeFresnelCost::fit_of(x.data(), n_d);
+  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  return fit;
 }
 
 std::optional<std::vector<float>> diffuse_colour(const MeasuredBrdf& measured, const CellTable& table,

@@ -17,6 +17,7 @@ namespace spectrace {
 struct FreeFresnelFit {
   double albedo_d = 0, alpha = 0;
   std::vector<double> factor;  ///< [theta_d], >= 0
+  bool converged = false;
 };
 /// The least squares of eq. 7 over the cells well above the horizon, begun at `start`.
 FreeFresnelFit fit_free_fresnel(const CellTable& table, double epsilon, const AnalyticFit& start);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 
 #include "separation/fast_log.h"
 
@@ -82,6 +83,9 @@ class LogRoot {
     for (std::size_t k = 0; k < kStrip; ++k) s[k] = s_[k] < kZero ? 0.0F : s_[k];
     return s;
   }
+
+  /// Of those wanted, how many the iterations' limit has cut short.
+  [[nodiscard]] int unfinished() const { return std::accumulate(open_.begin(), open_.end(), 0); }
 
   template <typename T>
   SPECTRACE_KERNEL void step(const LogRootSums<T>& sums) {

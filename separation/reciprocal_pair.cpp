@@ -38,7 +38,7 @@ ReciprocalPair locate_pair(const MeasuredBrdf& brdf, const DirectionPair& direct
       pair.scale[1 - i] = 0;
     }
   }
-  pair.both = orders[0] && orders[1] && pair.scale[0] == 1 && pair.scale[1] == 1;
+  pair.both = measured[0] && measured[1];
   return pair;
 }
 

@@ -117,10 +117,15 @@ std::string SeparationReport::full() const {
                                    name_of(options.diffuse), 100 * lambert_cost));
   line("step 3", fmt::format("rms log residual: sun {:.4f}, fresnel {:.4f}, diffraction {:.4f}",
                              overall(rms_sun), overall(rms_fresnel), overall(rms_diffraction)));
+  if (unfinished > 0) {
+    line("  unfinished", fmt::format("{} of its unknowns, at the iterations' limit", unfinished));
+  }
   if (options.residual_rank > 0) {
     line("residual model",
-         fmt::format("{:.1f} % of what the diffraction model leaves; {:.3f} % of it clamped",
-                     100 * residual_explained, 100 * residual_clamped_share));
+         fmt::format("{:.1f} % of what the diffraction model leaves; clamped: {:.3f} % of it, {:.3f} % of "
+                     "its odd part",
+                     100 * residual_explained, 100 * residual_clamped_share,
+                     100 * residual_odd_clamped_share));
   }
   line("eqs. 19 and 20", options.residual == SpectralResidual::kWhole
                              ? "whole: they compare the whole BRDF, as eq. 18 does"
@@ -177,12 +182,14 @@ std::string SeparationReport::json(bool with_timings) const {
   json.member("step2_cost", step2_cost);
   json.member("specular_share", specular_share);
   json.member("lambert_cost", lambert_cost);
+  json.member("step3_unfinished", unfinished);
   write_array(json, "rms_sun", rms_sun);
   write_array(json, "rms_fresnel", rms_fresnel);
   write_array(json, "rms_diffraction", rms_diffraction);
   if (options.residual_rank > 0) {
     json.member("residual_explained", residual_explained);
     json.member("residual_clamped_share", residual_clamped_share);
+    json.member("residual_odd_clamped_share", residual_odd_clamped_share);
   }
   if (with_timings) {
     json.key("seconds");

@@ -29,6 +29,27 @@ constexpr int kScoutStride = 7;
 // Components below this share of the residual are noise of the arithmetic.
 constexpr double kNegligible = 1e-6;
 
+/// What an odd ratio is multiplied with, over M: 0 at the horizon, 1/2 at equal cosines.
+double odd_factor(const DirectionPair& directions) {
+  const double cos_o = std::max(double(directions.wo.z), 0.0), cos_i = std::max(double(directions.wi.z), 0.0);
+  return cos_o > 0 && cos_i > 0 ? 2 * cos_o * cos_i / sqr(cos_o + cos_i) : 0;
+}
+
+/// [cell]
+std::vector<double> odd_factors(const HalfDifferenceGrid& grid) {
+  std::vector<double> factors;
+  factors.reserve(grid.size());
+  for (int h = 0; h < grid.n_theta_h; ++h) {
+    for (int d = 0; d < grid.n_theta_d; ++d) {
+      for (int p = 0; p < grid.n_phi_d; ++p) {
+        factors.push_back(
+            odd_factor(from_half_difference({grid.theta_h(h), grid.theta_d(d), grid.phi_d(p)})));
+      }
+    }
+  }
+  return factors;
+}
+
 /// Node by node: what the measurement says less what the diffraction model says, over the model's mean.
 class Residuals {
  public:
@@ -66,7 +87,7 @@ class Residuals {
     }
     odd.setZero();
     if (pair.both) {
-      node.odd_factor = 2 * double(directions.wo.z) * double(directions.wi.z) / (cosines * cosines);
+      node.odd_factor = odd_factor(directions);
       const std::array<double, 2> scale = pair.odd_scale(directions);
       gather(pair, {scale[0] / (node.odd_factor * node.mean), scale[1] / (node.odd_factor * node.mean)}, odd);
     }
@@ -136,16 +157,23 @@ Eigen::MatrixXd components(const Eigen::MatrixXd& moments, std::size_t rank, dou
   return eigen.eigenvectors().rightCols(count).rowwise().reverse().transpose() * std::sqrt(double(n));
 }
 
-/// [cell][plane] in steps of kStep; counts what a byte does not reach.
-std::vector<std::int8_t> encoded(std::span<const std::vector<float>> planes, std::size_t& clamped) {
-  std::vector<std::int8_t> codes(planes.front().size() * planes.size());
-  for (std::size_t cell = 0; cell < planes.front().size(); ++cell) {
-    for (std::size_t k = 0; k < planes.size(); ++k) {
+struct Codes {
+  std::vector<std::int8_t> code;  ///< [cell][plane] in steps of kStep
+  double clamped_share = 0;       ///< beyond what a byte reaches, cells counted by their weight
+};
+Codes encoded(std::span<const std::vector<float>> planes, std::span<const double> cell_weight) {
+  const std::size_t cells = planes.front().size(), n = planes.size();
+  Codes codes{.code = std::vector<std::int8_t>(cells * n)};
+  double clamped = 0, all = 0;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    for (std::size_t k = 0; k < n; ++k) {
       const float code = std::round(planes[k][cell] / kStep);
-      clamped += std::abs(code) > 127 ? 1 : 0;
-      codes[cell * planes.size() + k] = static_cast<std::int8_t>(std::clamp(code, -127.0F, 127.0F));
+      clamped += std::abs(code) > 127 ? cell_weight[cell] : 0;
+      codes.code[cell * n + k] = static_cast<std::int8_t>(std::clamp(code, -127.0F, 127.0F));
     }
+    all += cell_weight[cell] * double(n);
   }
+  codes.clamped_share = all > 0 ? clamped / all : 0;
   return codes;
 }
 
@@ -191,11 +219,14 @@ ResidualTable fit_residual(const MeasuredBrdf& measured, const SeparatedTables& 
   for (Eigen::Index k = 0; k < basis.rows(); ++k) {
     for (Eigen::Index i = 0; i < basis.cols(); ++i) table.basis.push_back(static_cast<float>(basis(k, i)));
   }
-  std::size_t clamped = 0, clamped_odd = 0;
-  table.ratio = encoded(std::span(planes).first(count), clamped);
-  if (with_odd) table.odd = encoded(std::span(planes).subspan(count), clamped_odd);
-  // The odd ones are clamped at the horizon, where their factor vanishes: that costs nothing.
-  report.clamped_share = double(clamped) / double(table.ratio.size());
+  Codes even = encoded(std::span(planes).first(count), std::vector<double>(grid.size(), 1.0));
+  table.ratio = std::move(even.code);
+  report.clamped_share = even.clamped_share;
+  if (with_odd) {
+    Codes odd = encoded(std::span(planes).subspan(count), odd_factors(grid));
+    table.odd = std::move(odd.code);
+    report.odd_clamped_share = odd.clamped_share;
+  }
   return table;
 }
 

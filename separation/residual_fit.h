@@ -11,7 +11,9 @@ namespace spectrace {
 struct ResidualReport {
   /// Share of the squared residual, weighted by solid angle, that the terms explain: 1 for RGB.
   double explained = 0;
-  double clamped_share = 0;  ///< of the even ratios: beyond what a byte times the step holds
+  /// Of the ratios: beyond what a byte times the step holds. Those of the odd terms, which are clamped near
+  /// the horizon, count by the factor they are multiplied with, which vanishes there.
+  double clamped_share = 0, odd_clamped_share = 0;
 };
 
 /// Principal components of (X - diffraction model) / M over the axis, M the model's mean at each node, of

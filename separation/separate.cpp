@@ -73,13 +73,14 @@ void store(SpectralFit fit, SplitResult split, SeparationResult& result) {
 constexpr double kLargestExcess = 0.01;
 
 /// c_d over its mean, which becomes the fit's alpha_d. Empty, and the fit untouched, where this is not asked
-/// for, not determined, or refuted: a Lambert lobe may not exceed the measurement, or no more than that of
-/// eq. 7 does.
+/// for, not found, not determined, or refuted: a Lambert lobe may not exceed the measurement, or no more than
+/// that of eq. 7 does.
 std::vector<float> dark_colour(const MeasuredBrdf& measured, const CellTable& table,
                                AnalyticSolution& analytic, const SeparationOptions& options) {
   if (options.colour != DiffuseColour::kDark || analytic.matte) return {};
-  std::optional<std::vector<float>> s_d =
-      diffuse_colour(measured, table, fit_free_fresnel(table, options.epsilon, analytic.fit));
+  const FreeFresnelFit fit = fit_free_fresnel(table, options.epsilon, analytic.fit);
+  if (!fit.converged) return {};
+  std::optional<std::vector<float>> s_d = diffuse_colour(measured, table, fit);
   if (!s_d) return {};
   const double mean = std::reduce(s_d->begin(), s_d->end(), 0.0) / double(s_d->size());
   const double allowed = std::max(kLargestExcess, lambert_excess(table, analytic.fit.albedo_d));
@@ -155,6 +156,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   SpectralFit spectra;
   report.seconds_step3 =
       seconds_of([&] { spectra = fit_spectra(measured, table, split, s_d, options, progress); });
+  report.unfinished = spectra.unfinished;
   store(std::move(spectra), std::move(split), result);
   if (options.analytic) {
     progress.update("analytic model", 0, 1);
@@ -172,6 +174,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
       seconds_of([&] { result.tables.residual = fit_residual(measured, result.tables, options, residual); });
   report.residual_explained = residual.explained;
   report.residual_clamped_share = residual.clamped_share;
+  report.residual_odd_clamped_share = residual.odd_clamped_share;
 }
 
 }  // namespace

@@ -98,9 +98,12 @@ struct SeparationReport {
   double lambert_cost = 0, specular_share = 0;
   /// [axis] root mean square of ln(ρ w + ε) less ln(model w + ε) over the measured cells (eqs. 18-20).
   std::vector<double> rms_sun, rms_fresnel, rms_diffraction;
-  std::vector<double> rms_analytic;   ///< the same of the analytic model, over the cells it was fitted to
-  double residual_explained = 0;      ///< share of the squared residual that the terms explain, 0 where none
-  double residual_clamped_share = 0;  ///< of their ratios, beyond what a byte holds
+  std::vector<double> rms_analytic;  ///< the same of the analytic model, over the cells it was fitted to
+  int unfinished = 0;             ///< unknowns of eqs. 18-20 whose solver the iterations' limit has cut short
+  double residual_explained = 0;  ///< share of the squared residual that the terms explain, 0 where none
+  /// Of their ratios, beyond what a byte holds; of the odd ones weighted by the factor they are multiplied
+  /// by.
+  double residual_clamped_share = 0, residual_odd_clamped_share = 0;
   double seconds_residual = 0, seconds_analytic = 0;
   /// Reading the measurement; choosing the model, compacting and writing: of whoever does that.
   double seconds_read = 0, seconds_store = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "core/math/math.h"
@@ -58,8 +59,8 @@ struct Angles {
       : n_h(std::size_t(table.grid.n_theta_h)), n_d(std::size_t(table.grid.n_theta_d)) {}
 };
 
-/// eq. 18 where s_d is known already: one unknown per wavelength.
-void fit_sun(StripFit& strip, float highest) {
+/// eq. 18 where s_d is known already: one unknown per wavelength. Returns how many are unfinished.
+int fit_sun(StripFit& strip, float highest) {
   const CellTable& table = strip.whole.table;
   const Angles angles(table);
   LogRoot root(filled(1), strip.count, 0, strip.whole.epsilon, filled(highest));
@@ -79,6 +80,7 @@ void fit_sun(StripFit& strip, float highest) {
     }
   }
   strip.s_sun = root.result();
+  return root.unfinished();
 }
 
 /// eq. 19: one unknown per (theta_d, wavelength), drawn towards s_sun.
@@ -86,6 +88,7 @@ void fit_fresnel(const StripFit& strip, SpectralFit& fit) {
   const std::size_t axis_size = fit.s_d.size();
   const CellTable& table = strip.compared.table;
   const Angles angles(table);
+  std::vector<int> unfinished(angles.n_d);
   parallel_chunks(angles.n_d, [&](std::size_t d) {
     LogRoot root(strip.s_sun, strip.count, kFresnelPrior, strip.compared.epsilon, highest_of(strip.s_sun));
     for (const std::size_t stride : {kScoutStride, std::size_t(1)}) {
@@ -99,7 +102,9 @@ void fit_fresnel(const StripFit& strip, SpectralFit& fit) {
       }
     }
     std::copy_n(root.result().begin(), strip.count, &fit.s_fresnel[d * axis_size + strip.first]);
+    unfinished[d] = root.unfinished();
   });
+  fit.unfinished = std::accumulate(unfinished.begin(), unfinished.end(), fit.unfinished);
 }
 
 using Squares = std::array<std::array<double, kStrip>, 3>;
@@ -112,13 +117,16 @@ void fit_diffraction(const StripFit& strip, float prior, SpectralFit& fit) {
   const Angles angles(table);
   const Strip highest = highest_of(strip.s_sun);
   std::vector<Squares> slices(angles.n_h);
+  std::vector<int> unfinished(angles.n_h);
   parallel_chunks(angles.n_h, [&](std::size_t h) {
     std::array<Strip, 3> s{strip.s_sun};
     for (std::size_t d = 0; d < angles.n_d; ++d) {
       const std::size_t group = h * angles.n_d + d;
       const CellRange cells = cells_of_group(table, group, 1);
       std::copy_n(&fit.s_fresnel[d * axis_size + strip.first], strip.count, s[1].begin());
-      s[2] = solve_group(strip.compared, cells, s[1], strip.count, prior, highest);
+      const GroupSolution found = solve_group(strip.compared, cells, s[1], strip.count, prior, highest);
+      s[2] = found.s;
+      unfinished[h] += found.unfinished;
       std::copy_n(s[2].begin(), strip.count, &fit.s_diffraction[group * axis_size + strip.first]);
       const std::array<Strip, 3> sums = squares(strip.whole, cells, s);
       for (std::size_t m = 0; m < 3; ++m) {
@@ -126,6 +134,7 @@ void fit_diffraction(const StripFit& strip, float prior, SpectralFit& fit) {
       }
     }
   });
+  fit.unfinished = std::accumulate(unfinished.begin(), unfinished.end(), fit.unfinished);
   const std::array<std::vector<double>*, 3> rms{&fit.rms_sun, &fit.rms_fresnel, &fit.rms_diffraction};
   for (std::size_t m = 0; m < 3; ++m) {
     for (std::size_t k = 0; k < std::size_t(strip.count); ++k) {
@@ -142,10 +151,11 @@ void fit_eq_18(StripFit& strip, const std::vector<float>& s_d, SpectralFit& fit)
     const TwoLobes two = fit_two_lobes(strip.whole, strip.count);
     strip.whole.s_d = two.s_d;
     strip.s_sun = two.s_s;
+    fit.unfinished += two.unfinished;
   } else {
     std::copy_n(&s_d[strip.first], strip.count, strip.whole.s_d.begin());
     // A lone lit wavelength has as many as the axis; twice that for its fit.
-    fit_sun(strip, 2 * static_cast<float>(fit.s_d.size()));
+    fit.unfinished += fit_sun(strip, 2 * static_cast<float>(fit.s_d.size()));
   }
   strip.compared.s_d = strip.whole.s_d;
   std::copy_n(strip.whole.s_d.begin(), strip.count, &fit.s_d[strip.first]);

@@ -19,6 +19,7 @@ struct SpectralFit {
   std::vector<float> s_diffraction;  ///< [theta_h][theta_d][axis], eq. 20
   /// [axis] root mean square of ln(ρ w + ε) - ln((s_d ρ_d + s ρ_s) w + ε): one measure for the three models.
   std::vector<double> rms_sun, rms_fresnel, rms_diffraction;
+  int unfinished = 0;  ///< unknowns of eqs. 18-20 whose solver the iterations' limit has cut short
 };
 
 /// Solves the three problems one after the other, a block of wavelengths at a time. `s_d`: [axis] where the

@@ -40,13 +40,13 @@ LogRootSums<float> root_sums(const StripProblem& problem, const CellRange& cells
   return sums;
 }
 
-Strip solve_group(const StripProblem& problem, const CellRange& cells, const Strip& towards, int count,
-                  float prior, const Strip& highest) {
-  Strip result;
+GroupSolution solve_group(const StripProblem& problem, const CellRange& cells, const Strip& towards,
+                          int count, float prior, const Strip& highest) {
+  GroupSolution result;
   run_kernel([&]() SPECTRACE_KERNEL {
     LogRoot root(towards, count, prior, problem.epsilon, highest);
     while (!root.done()) root.step(root_sums_inline(problem, cells, root.at()));
-    result = root.result();
+    result = {.s = root.result(), .unfinished = root.unfinished()};
   });
   return result;
 }

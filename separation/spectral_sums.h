@@ -32,8 +32,12 @@ CellRange cells_of_group(const CellTable& table, std::size_t group, std::size_t 
 LogRootSums<float> root_sums(const StripProblem& problem, const CellRange& cells, const Strip& s);
 
 /// eq. 20 over `cells`: the specular colour from the start `towards`.
-Strip solve_group(const StripProblem& problem, const CellRange& cells, const Strip& towards, int count,
-                  float prior, const Strip& highest);
+struct GroupSolution {
+  Strip s{};
+  int unfinished = 0;  ///< wavelengths that the iterations' limit has cut short
+};
+GroupSolution solve_group(const StripProblem& problem, const CellRange& cells, const Strip& towards,
+                          int count, float prior, const Strip& highest);
 
 /// Σ r² over `cells` for each of three specular colours.
 std::array<Strip, 3> squares(const StripProblem& problem, const CellRange& cells,

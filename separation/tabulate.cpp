@@ -77,16 +77,24 @@ std::vector<float> node_values(const MeasuredBrdf& measured, const HalfDifferenc
   return values;
 }
 
+// Wavelengths that a task fills at once: a cache line of a cell's spectrum, read and written whole.
+constexpr std::size_t kFillBlock = 16;
+
 /// The same without gaps.
 std::vector<float> filled_values(const MeasuredBrdf& measured, const HalfDifferenceGrid& grid, AddNode add,
                                  Fill fill) {
   std::vector<float> values = node_values(measured, grid, add);
   const std::size_t n = measured.axis().size();
-  parallel_chunks(n, [&](std::size_t k) {
-    std::vector<float> channel(grid.size());
-    for (std::size_t cell = 0; cell < channel.size(); ++cell) channel[cell] = values[cell * n + k];
-    fill(grid, channel);
-    for (std::size_t cell = 0; cell < channel.size(); ++cell) values[cell * n + k] = channel[cell];
+  parallel_chunks((n + kFillBlock - 1) / kFillBlock, [&](std::size_t block) {
+    const std::size_t first = block * kFillBlock, count = std::min(kFillBlock, n - first);
+    std::vector<std::vector<float>> channels(count, std::vector<float>(grid.size()));
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+      for (std::size_t k = 0; k < count; ++k) channels[k][cell] = values[cell * n + first + k];
+    }
+    for (std::vector<float>& channel : channels) fill(grid, channel);
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+      for (std::size_t k = 0; k < count; ++k) values[cell * n + first + k] = channels[k][cell];
+    }
   });
   return values;
 }

@@ -41,7 +41,8 @@ TwoLobeEquations equations_of(const TermSums& t, std::size_t k) {
 // grid).
 constexpr std::size_t kScoutStride = 7;
 
-/// Improves `best` on every `stride`th cell until no wavelength's relative step exceeds `tolerance`.
+/// Improves `best` on every `stride`th cell until no wavelength's relative step would exceed `tolerance`,
+/// were it not damped: a damped step is short for other reasons too.
 void descend(const StripProblem& problem, std::size_t stride, int count, double tolerance, TwoLobes& best) {
   constexpr int kMaxIterations = 60;
   constexpr double kFirstDamping = 1e-3, kSmallestDamping = 1e-9;
@@ -66,15 +67,18 @@ void descend(const StripProblem& problem, std::size_t stride, int count, double 
         damping[k] *= 10;
       }
       const double s_d = double(best.s_d[k]), s_s = double(best.s_s[k]);
-      const std::array<double, 2> step = bounded_step(equations[k], damping[k], s_d, s_s);
+      const std::array<double, 2> whole = bounded_step(equations[k], 0, s_d, s_s);
+      converged[k] = std::abs(whole[0]) + std::abs(whole[1]) <= tolerance * (s_d + s_s);
+      const std::array<double, 2> step =
+          converged[k] ? whole : bounded_step(equations[k], damping[k], s_d, s_s);
       trial.s_d[k] = static_cast<float>(s_d + step[0]);
       trial.s_s[k] = static_cast<float>(s_s + step[1]);
-      converged[k] = std::abs(step[0]) + std::abs(step[1]) <= tolerance * (s_d + s_s);
       if (!converged[k]) continue;
       best.s_d[k] = trial.s_d[k], best.s_s[k] = trial.s_s[k];  // Newton's last step needs no confirmation
       --remaining;
     }
   }
+  best.unfinished = remaining;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace spectrace {
 
 struct TwoLobes {
   Strip s_d{}, s_s{};
+  int unfinished = 0;  ///< wavelengths that the iterations' limit has cut short
 };
 
 /// The 2x2 normal equations at one point.

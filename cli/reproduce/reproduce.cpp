@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <new>
 #include <set>
 #include <string>
 #include <system_error>
@@ -53,13 +54,13 @@ struct Arguments {
 
 std::vector<fs::path> files_of(const fs::path& folder) {
   std::vector<fs::path> files;
-  std::error_code failed;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
-    const std::string extension = entry.path().extension().string();
+  std::error_code failed, unknown;
+  for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
+    const std::string extension = entry->path().extension().string();
     constexpr std::array kExtensions{".bsdf", ".brdf", ".binary", ".json"};
-    if (entry.is_regular_file() &&
+    if (entry->is_regular_file(unknown) &&
         std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end())
-      files.push_back(entry.path());
+      files.push_back(entry->path());
   }
   if (failed) throw InputError(folder.string(), "", "cannot be read as a folder: " + failed.message());
   if (files.empty()) throw InputError(folder.string(), "", "holds no .bsdf, .brdf, .binary or .json file");
@@ -204,24 +205,30 @@ class Report {
                       .problem = {},
                       .choice = {},
                       .rows = {}};
+    MaterialStudy study;
     try {
       about.key = key_of(file);
-      MaterialStudy study = study_material(file, scene_, arguments_.study, step);
-      study.record.material = name;
-      study.record.file = about.file;
-      study.record.key = about.key;
-      write_pictures(study, name);
-      JsonWriter json;
-      write_record(json, study.record);
-      write_file_atomically(root_ / "materials" / (name + ".separation.json"),
-                            std::string_view(study.report_json + "\n"));
-      // Last: a record says that all the rest is there.
-      write_file_atomically(record_file(name), std::string_view(json.text() + "\n"));
-      return study.record;
-    } catch (const InputError& e) {
-      about.problem = e.diagnostics().front().text();  // one bad file, and the rest go on
+      study = study_material(file, scene_, arguments_.study, step);
+    } catch (const InputError& e) {  // one bad file, and the rest go on
+      for (const Diagnostic& d : e.diagnostics())
+        about.problem += (about.problem.empty() ? "" : "\n") + d.text();
+      return about;
+    } catch (const std::bad_alloc&) {
+      about.problem =
+          fmt::format("{}: not enough memory for a grid of this size at these wavelengths", about.file);
       return about;
     }
+    study.record.material = name;
+    study.record.file = about.file;
+    study.record.key = about.key;
+    write_pictures(study, name);
+    JsonWriter json;
+    write_record(json, study.record);
+    write_file_atomically(root_ / "materials" / (name + ".separation.json"),
+                          std::string_view(study.report_json + "\n"));
+    // Last: a record says that all the rest is there.
+    write_file_atomically(record_file(name), std::string_view(json.text() + "\n"));
+    return study.record;
   }
 
   void write_pictures(const MaterialStudy& study, const std::string& name) const {

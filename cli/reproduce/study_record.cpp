@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/reproduce/study_record.h"
 
+#include <cmath>
 #include <limits>
 #include <system_error>
 
@@ -43,6 +44,7 @@ StudyRow read_row(const JsonValue& json) {
   row.reference = json.require("reference").string();
   row.model = json.require("model").string();
   for (const FigureField& f : kFigures) row.*f.field = json.require(f.name).number(0);
+  if (json.require("identical").boolean(false)) row.psnr_db = std::numeric_limits<double>::infinity();
   row.bytes = json.require("bytes").integer(0, 0, kMost);
   return row;
 }
@@ -61,7 +63,11 @@ void write_record(JsonWriter& json, const StudyRecord& record) {
     json.begin_object();
     json.member("reference", row.reference);
     json.member("model", row.model);
-    for (const FigureField& f : kFigures) json.member(f.name, row.*f.field);
+    const bool identical = std::isinf(row.psnr_db);  // JSON has no infinity
+    for (const FigureField& f : kFigures) {
+      json.member(f.name, identical && f.field == &StudyRow::psnr_db ? 0 : row.*f.field);
+    }
+    json.member("identical", identical);
     json.member("bytes", row.bytes);
     json.end_object();
   }

@@ -13,18 +13,17 @@
 
 namespace spectrace::cli {
 
-/// Pictures that are the same to the last bit have no PSNR; this stands for it, above any other.
-inline constexpr double kIdenticalDb = 150;
-
 /// One picture against one reference.
 struct StudyRow {
   std::string reference;  ///< "tabulated", "raw", "truth"
-  /// "analytic", "sun", "fresnel", "diffraction"; against raw also "residual" and the tables "tabulated" (X),
-  /// "oriented_table" (X with what is not reciprocal) and "plain_table"; against the truth also "diffuse" and
-  /// "specular", the components of the diffraction model.
+  /// "analytic", "sun", "fresnel", "diffraction"; also "residual" and "residual_reciprocal" (without its odd
+  /// terms), and against raw the tables "tabulated" (X), "oriented_table" (X with what is not reciprocal) and
+  /// "plain_table"; against the truth also "diffuse" and "specular", the components of the diffraction model.
   std::string model;
-  double psnr_db = 0, ssim = 0, mape = 0, rel_mse = 0;
-  double seconds = 0;      ///< from the file on disk to that description (sun, fresnel, diffraction together)
+  double psnr_db = 0;  ///< infinite where the pictures are the same to the last bit
+  double ssim = 0, mape = 0, rel_mse = 0;
+  double seconds =
+      0;  ///< from the file on disk to that description (sun, fresnel, diffraction fitted together)
   std::int64_t bytes = 0;  ///< of that description: a compact `.sep`, or a table in memory
 };
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "core/base/version.h"
 
@@ -48,7 +50,7 @@ std::vector<ModelMean> means_of(std::span<const StudyRecord> records) {
       if (mean == means.end())
         mean = means.insert(means.end(), {.reference = row.reference, .model = row.model});
       ++mean->materials;
-      mean->psnr_db += row.psnr_db;
+      std::isinf(row.psnr_db) ? void(++mean->identical) : void(mean->psnr_db += row.psnr_db);
       mean->ssim += row.ssim;
       mean->mape += row.mape;
       mean->rel_mse += row.rel_mse;
@@ -59,7 +61,10 @@ std::vector<ModelMean> means_of(std::span<const StudyRecord> records) {
     }
   }
   for (ModelMean& mean : means) {
-    for (const MeanField& f : kMeanFields) mean.*f.field /= mean.materials;
+    for (const MeanField& f : kMeanFields) {
+      mean.*f.field /= f.field == &ModelMean::psnr_db ? mean.materials - mean.identical : mean.materials;
+    }
+    if (mean.identical == mean.materials) mean.psnr_db = std::numeric_limits<double>::infinity();
   }
   std::stable_sort(means.begin(), means.end(), [](const ModelMean& a, const ModelMean& b) {
     const auto order = [](const std::string& r) { return r == "tabulated" ? 0 : r == "raw" ? 1 : 2; };
@@ -97,6 +102,8 @@ std::vector<std::string> findings(std::span<const ModelMean> means) {
   add_gain(lines, means, "raw", "oriented_table", "plain_table", ": what keeping both orders gains");
   add_gain(lines, means, "raw", "residual", "tabulated", ", the paper's ceiling");
   add_gain(lines, means, "raw", "residual", "oriented_table", ", its own ceiling");
+  add_gain(lines, means, "truth", "residual_reciprocal", "diffraction", ": what its even terms gain");
+  add_gain(lines, means, "truth", "residual", "diffraction", ": what they and the odd ones gain");
   if (const ModelMean* m = find_mean(means, "tabulated", "diffraction"); m != nullptr) {
     lines.push_back(fmt::format("reference tabulated: diffraction better than sun on {} of {} materials",
                                 m->better_than_sun, m->materials));
@@ -136,6 +143,7 @@ std::string json_text(std::span<const StudyRecord> records, std::span<const Mode
     json.member("model", m.model);
     json.member("materials", m.materials);
     json.member("better_than_sun", m.better_than_sun);
+    json.member("identical", m.identical);
     for (const MeanField& f : kMeanFields) json.member(f.name, m.*f.field);
     json.end_object();
   }

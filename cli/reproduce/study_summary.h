@@ -16,7 +16,9 @@ struct ModelMean {
   std::string reference, model;
   int materials = 0;
   int better_than_sun = 0;  ///< materials on which its PSNR is higher
-  double psnr_db = 0, ssim = 0, mape = 0, rel_mse = 0, seconds = 0, megabytes = 0;
+  int identical = 0;        ///< materials whose pictures are the same to the last bit
+  double psnr_db = 0;       ///< over the others
+  double ssim = 0, mape = 0, rel_mse = 0, seconds = 0, megabytes = 0;
 };
 
 /// In the order the rows have: reference by reference, model by model.
