@@ -64,7 +64,7 @@ void fill_slice(const MeasuredBrdf& brdf, const SeparationOptions& options,
         ++slice.counts.measured;
         add_fitted(slice, cell, directions, pair, q, options);
       } else {
-        ++(pair.extrapolated ? slice.counts.extrapolated : slice.counts.unmeasured);
+        ++(pair.extrapolated ? slice.counts.extrapolated : slice.counts.invalid);
       }
     }
   }
@@ -102,7 +102,7 @@ CellTable join(const HalfDifferenceGrid& grid, std::vector<CellTable>& slices, s
     table.counts.below_horizon += slice.counts.below_horizon;
     table.counts.measured += slice.counts.measured;
     table.counts.extrapolated += slice.counts.extrapolated;
-    table.counts.unmeasured += slice.counts.unmeasured;
+    table.counts.invalid += slice.counts.invalid;
     slice = {};
   }
   table.begin.push_back(static_cast<std::uint32_t>(table.cell.size()));

@@ -19,7 +19,7 @@ struct CellCounts {
   std::size_t below_horizon = 0;
   std::size_t measured = 0;      ///< enter the fits
   std::size_t extrapolated = 0;  ///< above the horizon, but beyond the last measured elevation in both orders
-  std::size_t unmeasured = 0;    ///< above the horizon, not beyond it, but marked invalid in the file
+  std::size_t invalid = 0;       ///< above the horizon, not beyond it, but marked invalid in the file
 };
 
 /// Cells that were measured ("fitted" cells), grouped by (theta_h, theta_d), with what the fits need of each.

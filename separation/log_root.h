@@ -101,7 +101,9 @@ class LogRoot {
   // themselves; the samples carry 1e-7 of float rounding.
   static constexpr float kLastHalley = 1e-2F, kLastStep = 1e-5F;
   static constexpr float kLongestStep = 2;
-  static constexpr int kMaxIterations = 60;  // bisection alone needs 22 for the range
+  // Where steps stay inside the bracket without closing it (seen where the fading prior bends the gradient),
+  // bisection takes over, which alone needs 22 for the range.
+  static constexpr int kPatience = 36, kMaxIterations = 60;
 
   template <typename T>
   SPECTRACE_KERNEL void advance(std::size_t k, const LogRootSums<T>& sums) {
@@ -129,7 +131,7 @@ class LogRoot {
     float next = s * fast_exp(change);
     // Beyond an end of the range that end is tried; beyond a tried value of the bracket its middle.
     next = std::min(std::max(next, lowest_[k]), highest_[k]);
-    const bool inside = next > low_[k] && next < high_[k];
+    const bool inside = next > low_[k] && next < high_[k] && iterations_ <= kPatience;
     const bool at_end = (rises && s >= highest_[k]) || (!rises && s <= lowest_[k]);
     const float low = std::max(low_[k], lowest_[k]), high = std::min(high_[k], highest_[k]);
     const float middle = std::sqrt(low * high);

@@ -88,13 +88,13 @@ std::string SeparationReport::full() const {
   };
   if (source.samples > 0) {
     line("source", fmt::format("{}: {} samples, {} of them invalid; cells near none are filled, and count as "
-                               "unmeasured",
+                               "invalid",
                                source.format, source.samples, source.invalid_samples));
   }
   line("cells", fmt::format("{:>9}, theta_h {}", cells, spacing_of(options.grid)));
   cell_line("  measured", measured);
   cell_line("  extrapolated", extrapolated);
-  cell_line("  unmeasured", unmeasured);
+  cell_line("  invalid", invalid);
   cell_line("  below horizon", below_horizon);
   line("negative values", fmt::format("{:>9} of the file, clamped to 0", negative_values));
   line("fill rule", std::string(kFillRule));
@@ -160,7 +160,7 @@ std::string SeparationReport::json(bool with_timings) const {
   json.member("total", cells);
   json.member("measured", measured);
   json.member("extrapolated", extrapolated);
-  json.member("unmeasured", unmeasured);
+  json.member("invalid", invalid);
   json.member("below_horizon", below_horizon);
   json.end_object();
   json.member("negative_values", negative_values);

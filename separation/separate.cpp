@@ -117,7 +117,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   report.below_horizon = table.counts.below_horizon;
   report.measured = table.counts.measured;
   report.extrapolated = table.counts.extrapolated;
-  report.unmeasured = table.counts.unmeasured;
+  report.invalid = table.counts.invalid;
 
   progress.update("analytic fit", 0, 1);
   AnalyticSolution analytic;

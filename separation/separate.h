@@ -109,7 +109,7 @@ struct SeparationReport {
   double seconds_read = 0, seconds_store = 0;
   std::size_t peak_memory_bytes = 0;  ///< of the whole process
   double seconds_table = 0, seconds_step1 = 0, seconds_step2 = 0, seconds_step3 = 0;
-  std::size_t cells = 0, below_horizon = 0, measured = 0, extrapolated = 0, unmeasured = 0;  ///< of the grid
+  std::size_t cells = 0, below_horizon = 0, measured = 0, extrapolated = 0, invalid = 0;  ///< of the grid
   std::size_t negative_values = 0;  ///< of the file, clamped to 0
   MeasuredSource source;            ///< what the measurement was converted from
   SeparationOptions options;        ///< as used

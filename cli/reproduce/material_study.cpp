@@ -101,7 +101,7 @@ class Study {
     record.cells = std::int64_t(report_.cells);
     record.measured = std::int64_t(report_.measured);
     record.extrapolated = std::int64_t(report_.extrapolated);
-    record.unmeasured = std::int64_t(report_.unmeasured);
+    record.invalid = std::int64_t(report_.invalid);
     record.below_horizon = std::int64_t(report_.below_horizon);
     record.negative_values = std::int64_t(report_.negative_values);
     record.specular_share = report_.specular_share;

@@ -45,10 +45,10 @@ std::string means_table(std::span<const ModelMean> means) {
 std::string material_section(const StudyRecord& record, const std::filesystem::path& sheets) {
   std::string html = fmt::format("<details open><summary>{}</summary>\n<p>", escaped(record.material));
   html += fmt::format(
-      "{} wavelengths; of {} cells {} measured, {} extrapolated, {} unmeasured, {} below the horizon; {} "
+      "{} wavelengths; of {} cells {} measured, {} extrapolated, {} invalid, {} below the horizon; {} "
       "negative values clamped. {:.1f} % of the light is specular; an exact Lambert lobe has {:.2f} % too "
       "much. {} invalid samples.<br>Cheapest model within tolerance: {}.</p>\n",
-      record.wavelengths, record.cells, record.measured, record.extrapolated, record.unmeasured,
+      record.wavelengths, record.cells, record.measured, record.extrapolated, record.invalid,
       record.below_horizon, record.negative_values, 100 * record.specular_share, 100 * record.lambert_cost,
       record.invalid_samples, escaped(record.choice));
   const Image sheet = read_image(sheets / (record.material + ".png"));

@@ -18,7 +18,7 @@ constexpr CountField kCounts[]{{"wavelengths", &StudyRecord::wavelengths},
                                {"cells", &StudyRecord::cells},
                                {"measured", &StudyRecord::measured},
                                {"extrapolated", &StudyRecord::extrapolated},
-                               {"unmeasured", &StudyRecord::unmeasured},
+                               {"invalid", &StudyRecord::invalid},
                                {"below_horizon", &StudyRecord::below_horizon},
                                {"negative_values", &StudyRecord::negative_values},
                                {"invalid_samples", &StudyRecord::invalid_samples}};

@@ -197,7 +197,8 @@ void add_forms_of_pearlescent(std::vector<BsdfCase>& cases) {
                      .conserves_energy = false,
                      .specular_step = kSeparatedStep});
   };
-  for (const SeparationModel model : {SeparationModel::kDiffraction, SeparationModel::kResidual}) {
+  for (const SeparationModel model : {SeparationModel::kSun, SeparationModel::kFresnel,
+                                      SeparationModel::kDiffraction, SeparationModel::kResidual}) {
     add(
         "Compact_" + name_of(model),
         [model] {
@@ -214,17 +215,20 @@ void add_forms_of_pearlescent(std::vector<BsdfCase>& cases) {
   const auto table = [](const auto& make) {
     SeparationOptions options;
     options.grid = {.n_theta_h = 45, .n_theta_d = 30, .n_phi_d = 36};
-    return TabulatedBrdf(std::make_shared<const HalfDifferenceTable>(
-        make(MeasuredBrdf(acquire_for_test(built_in("pearlescent"))), options)));
+    return std::make_shared<const HalfDifferenceTable>(
+        make(MeasuredBrdf(acquire_for_test(built_in("pearlescent"))), options));
   };
-  add("TableX", [table] { return table(tabulate); });
+  add("TableX", [table] { return TabulatedBrdf(table(tabulate)); });
   add(
-      "OrientedTable", [table] { return table(tabulate_oriented); }, false);
-  cases.push_back({.name = "PairedMeasurement", .make = [] {
-                     return PairedBrdf(
-                         MeasuredBrdf(acquire_for_test(built_in("pearlescent"))),
-                         SeparatedBrdf(separate_for_test("pearlescent"), SeparationModel::kDiffraction));
-                   }});
+      "OrientedTable", [table] { return TabulatedBrdf(table(tabulate_oriented)); }, false);
+  const auto add_paired = [&cases](std::string name, std::function<PairedBrdf::Values()> values) {
+    cases.push_back({.name = std::move(name), .make = [values] {
+                       return PairedBrdf(values(), SeparatedBrdf(separate_for_test("pearlescent"),
+                                                                 SeparationModel::kDiffraction));
+                     }});
+  };
+  add_paired("PairedMeasurement", [] { return MeasuredBrdf(acquire_for_test(built_in("pearlescent"))); });
+  add_paired("PairedPlainTable", [table] { return PlainTableBrdf(table(tabulate_plain)); });
 }
 
 void add_acquired(std::vector<BsdfCase>& cases) {

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
 #include "core/math/math.h"
 #include "separation/analytic_fit.h"
+#include "separation/diffuse_colour.h"
 #include "separation/spectral_fit.h"
 #include "separation/split.h"
 #include "tests/support/test_data.h"
@@ -18,7 +20,7 @@
 namespace spectrace::test {
 namespace {
 
-/// What separate() passes from step to step, with the diffuse colour of eqs. 7 and 18.
+/// What separate() passes from step to step, with either diffuse colour.
 class Optimality : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
@@ -31,10 +33,27 @@ class Optimality : public ::testing::TestWithParam<std::string> {
     ASSERT_TRUE(analytic_.converged);
     ASSERT_FALSE(analytic_.matte);
   }
-  void fit_colours() {
-    split_ = split_lobes(table_, analytic_.fit, analytic_.matte, options_);
+  void fit_colours(DiffuseColour colour) {
+    std::vector<float> s_d;
+    AnalyticFit fit = analytic_.fit;
+    if (colour == DiffuseColour::kDark) {
+      const FreeFresnelFit free = fit_free_fresnel(table_, options_.epsilon, analytic_.fit);
+      ASSERT_TRUE(free.converged);
+      const auto c_d = diffuse_colour(*measured_, table_, free);
+      ASSERT_TRUE(c_d.has_value());
+      fit.albedo_d = std::accumulate(c_d->begin(), c_d->end(), 0.0) / double(c_d->size());
+      ASSERT_GT(fit.albedo_d, 0);
+      for (const float c : *c_d) s_d.push_back(static_cast<float>(double(c) / fit.albedo_d));
+    }
+    split_ = split_lobes(table_, fit, analytic_.matte, options_);
     SilentProgress progress;
-    spectra_ = fit_spectra(*measured_, table_, split_, {}, options_, progress);
+    spectra_ = fit_spectra(*measured_, table_, split_, s_d, options_, progress);
+    EXPECT_EQ(spectra_.unfinished, 0);
+  }
+  [[nodiscard]] std::vector<ColourSample> all_samples(std::size_t k) const {
+    std::vector<ColourSample> all;
+    for (std::size_t group = 0; group < table_.grid.angular_size(); ++group) add_samples(k, group, all);
+    return all;
   }
   /// Adds the cells of one (theta_h, theta_d) at channel k.
   void add_samples(std::size_t k, std::size_t group, std::vector<ColourSample>& out) const {
@@ -133,10 +152,9 @@ TEST_P(Optimality, TheFreeFresnelFitSolvesItsEquation) {
 }
 
 TEST_P(Optimality, TheColoursOfBothLobesSolveEq18) {
-  fit_colours();
+  ASSERT_NO_FATAL_FAILURE(fit_colours(DiffuseColour::kPrinted));
   for (std::size_t k = 0; k < kChannels; ++k) {
-    std::vector<ColourSample> all;
-    for (std::size_t group = 0; group < table_.grid.angular_size(); ++group) add_samples(k, group, all);
+    const std::vector<ColourSample> all = all_samples(k);
     const auto s_d = double(spectra_.s_d[k]), s = double(spectra_.s_sun[k]);
     EXPECT_GE(s_d, 0);
     EXPECT_GE(s, 0);
@@ -146,35 +164,50 @@ TEST_P(Optimality, TheColoursOfBothLobesSolveEq18) {
   }
 }
 
+TEST_P(Optimality, TheSunColourSolvesEq18WhereTheDiffuseOneIsKnown) {
+  ASSERT_NO_FATAL_FAILURE(fit_colours(DiffuseColour::kDark));
+  for (std::size_t k = 0; k < kChannels; ++k) {
+    expect_best_colour(all_samples(k), k, double(spectra_.s_sun[k]), 1);
+  }
+}
+
 TEST_P(Optimality, TheColoursByThetaDSolveEq19) {
-  fit_colours();
-  for (std::size_t d = 0; d < n_d(); d += 3) {
-    for (std::size_t k = 0; k < kChannels; ++k) {
-      std::vector<ColourSample> of_theta_d;
-      for (std::size_t h = 0; h < std::size_t(table_.grid.n_theta_h); ++h) {
-        add_samples(k, h * n_d() + d, of_theta_d);
+  for (const DiffuseColour colour : {DiffuseColour::kPrinted, DiffuseColour::kDark}) {
+    ASSERT_NO_FATAL_FAILURE(fit_colours(colour));
+    std::size_t determined = 0;
+    for (std::size_t d = 0; d < n_d(); d += 3) {
+      for (std::size_t k = 0; k < kChannels; ++k) {
+        std::vector<ColourSample> of_theta_d;
+        for (std::size_t h = 0; h < std::size_t(table_.grid.n_theta_h); ++h) {
+          add_samples(k, h * n_d() + d, of_theta_d);
+        }
+        const auto s = double(spectra_.s_fresnel[d * kChannels + k]);
+        if (information(of_theta_d, k, s) < 100) continue;
+        ++determined;
+        expect_best_colour(of_theta_d, k, s, double(spectra_.s_sun[k]));
       }
-      const auto s = double(spectra_.s_fresnel[d * kChannels + k]);
-      if (information(of_theta_d, k, s) < 100) continue;
-      expect_best_colour(of_theta_d, k, s, double(spectra_.s_sun[k]));
     }
+    EXPECT_GT(determined, 0U) << name_of(colour);
   }
 }
 
 TEST_P(Optimality, TheColoursByThetaHAndThetaDSolveEq20) {
-  fit_colours();
-  std::size_t determined = 0;
-  for (std::size_t group = 0; group < table_.grid.angular_size(); ++group) {
-    for (std::size_t k = 0; k < kChannels; ++k) {
-      std::vector<ColourSample> samples;
-      add_samples(k, group, samples);
-      const auto s = double(spectra_.s_diffraction[group * kChannels + k]);
-      if (information(samples, k, s) < 10) continue;  // the prior then moves ln s by at most 1e-4 of its pull
-      ++determined;
-      expect_best_colour(samples, k, s, double(spectra_.s_fresnel[group % n_d() * kChannels + k]));
+  for (const DiffuseColour colour : {DiffuseColour::kPrinted, DiffuseColour::kDark}) {
+    ASSERT_NO_FATAL_FAILURE(fit_colours(colour));
+    std::size_t determined = 0;
+    for (std::size_t group = 0; group < table_.grid.angular_size(); ++group) {
+      for (std::size_t k = 0; k < kChannels; ++k) {
+        std::vector<ColourSample> samples;
+        add_samples(k, group, samples);
+        const auto s = double(spectra_.s_diffraction[group * kChannels + k]);
+        if (information(samples, k, s) < 10)
+          continue;  // the prior then moves ln s by at most 1e-4 of its pull
+        ++determined;
+        expect_best_colour(samples, k, s, double(spectra_.s_fresnel[group % n_d() * kChannels + k]));
+      }
     }
+    EXPECT_GT(determined, 50U) << name_of(colour);
   }
-  EXPECT_GT(determined, 50U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, Optimality,

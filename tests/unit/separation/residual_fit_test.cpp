@@ -16,18 +16,10 @@
 #include "separation/fill_grid.h"
 #include "separation/separate.h"
 #include "separation/tabulate.h"
+#include "tests/unit/separation/acquired.h"
 
 namespace spectrace {
 namespace {
-
-MeasuredBrdf acquired(const std::string& name) {
-  const Material material = build_material(
-      load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials" / (name + ".json")));
-  AcquisitionOptions options;
-  options.lambda_nm = {400, 450, 500, 550, 600, 650, 700};
-  SilentProgress progress;
-  return MeasuredBrdf(acquire(material, options, progress));
-}
 
 SeparationOptions coarse(int residual_rank) {
   SeparationOptions options;
@@ -36,8 +28,10 @@ SeparationOptions coarse(int residual_rank) {
   return options;
 }
 
+using test::acquired;
+
 TEST(ResidualFit, BringsTheModelToTheTableItself) {
-  const MeasuredBrdf measured = acquired("pearlescent");
+  const MeasuredBrdf measured = acquired("pearlescent", {400, 460, 520, 580, 640, 700});
   SilentProgress progress;
   const SeparationResult result = separate(measured, coarse(6), progress);
   EXPECT_GT(result.report.residual_explained, 0.99);
@@ -73,26 +67,7 @@ TEST(ResidualFit, BringsTheModelToTheTableItself) {
       }
     }
   }
-  EXPECT_LT(left, 0.02 * of);  // rounding to bytes, and the components left out
-}
-
-/// Colours that differ between the orders of a pair by a tenth, by where the light comes from.
-MeasuredBrdf not_reciprocal() {
-  const MeasuredBrdf glossy = acquired("glossy");
-  MeasuredTables tables = glossy.tables();
-  const std::size_t n = tables.axis.size(),
-                    rows = tables.slices() * std::size_t(tables.table_size) * std::size_t(tables.table_size);
-  // [slice][axis][row of the table]: brighter for light from low elevations.
-  tables.spectra.resize(rows * n);
-  const std::size_t per_slice = rows / tables.slices();
-  for (std::size_t r = 0; r < rows; ++r) {
-    const double tilt = 1 + 0.3 * double(r / per_slice) / double(tables.slices());
-    for (std::size_t k = 0; k < n; ++k) {
-      tables.spectra[(r / per_slice * n + k) * per_slice + r % per_slice] =
-          static_cast<float>(tilt * double(glossy.spectrum(static_cast<std::uint32_t>(r))[k]));
-    }
-  }
-  return MeasuredBrdf(std::move(tables));
+  EXPECT_LT(left, 0.02 * of);  // six terms for six wavelengths: rounding to bytes is left
 }
 
 /// Mean relative error of f cosθi over pairs in either order.
@@ -120,7 +95,7 @@ double error_of(const SeparatedBrdf& model, const MeasuredBrdf& measured) {
 }
 
 TEST(ResidualFit, KeepsWhatIsNotReciprocalUnlessToldNotTo) {
-  const MeasuredBrdf measured = not_reciprocal();
+  const MeasuredBrdf measured = test::not_reciprocal();
   SilentProgress progress;
   const auto fit = [&](bool reciprocal) {
     SeparationOptions options = coarse(4);

@@ -73,7 +73,7 @@ void expect_sound(const SeparationResult& result) {
   EXPECT_TRUE(all_finite_and_positive(result.tables.s_fresnel));
   EXPECT_TRUE(all_finite_and_positive(result.tables.s_diffraction));
   const SeparationReport& r = result.report;
-  EXPECT_EQ(r.cells, r.below_horizon + r.measured + r.extrapolated + r.unmeasured);
+  EXPECT_EQ(r.cells, r.below_horizon + r.measured + r.extrapolated + r.invalid);
 }
 
 TEST(Separate, RecoversTheDiffuseColourOfAKnownMaterial) {

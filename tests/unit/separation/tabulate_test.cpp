@@ -5,25 +5,16 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
-#include "materials/acquisition.h"
-#include "materials/material.h"
 #include "materials/plain_table_brdf.h"
+#include "tests/unit/separation/acquired.h"
 
 namespace spectrace {
 namespace {
 
 const MeasuredBrdf& measured() {
-  static const MeasuredBrdf brdf = [] {
-    const Material material = build_material(
-        load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials/glossy.json"));
-    AcquisitionOptions options;
-    options.lambda_nm = {500, 600};
-    SilentProgress progress;
-    return MeasuredBrdf(acquire(material, options, progress));
-  }();
+  static const MeasuredBrdf brdf = test::acquired("glossy", {500, 600});
   return brdf;
 }
 
@@ -43,9 +34,9 @@ const SeparationOptions& coarse() {
   return options;
 }
 
-/// At a node nothing is interpolated: there both tables hold what the file says.
+/// At a node nothing is interpolated: there every table holds what the file says.
 template <typename Brdf>
-void expect_the_file_at_nodes(const Brdf& brdf, bool both_orders) {
+void expect_the_file_at_nodes(const MeasuredBrdf& file, const Brdf& brdf, bool both_orders) {
   const SampledWavelengths lambda = at_500_nm();
   const ShadingPoint at{.lambda = lambda};
   const HalfDifferenceGrid& grid = coarse().grid;
@@ -55,10 +46,8 @@ void expect_the_file_at_nodes(const Brdf& brdf, bool both_orders) {
       for (int p = 1; p < grid.n_phi_d; p += 5) {
         const DirectionPair pair = from_half_difference({grid.theta_h(h), grid.theta_d(d), grid.phi_d(p)});
         if (!(pair.wo.z > 0.3 && pair.wi.z > 0.3)) continue;
-        const double there =
-            double(measured().evaluate(pair.wo, pair.wi, at).value_cos[0]) / double(pair.wi.z);
-        const double back =
-            double(measured().evaluate(pair.wi, pair.wo, at).value_cos[0]) / double(pair.wo.z);
+        const double there = double(file.evaluate(pair.wo, pair.wi, at).value_cos[0]) / double(pair.wi.z);
+        const double back = double(file.evaluate(pair.wi, pair.wo, at).value_cos[0]) / double(pair.wo.z);
         const double cosines = double(pair.wo.z) + double(pair.wi.z);
         const double expected =
             both_orders ? (there * double(pair.wi.z) + back * double(pair.wo.z)) / cosines : there;
@@ -74,12 +63,43 @@ void expect_the_file_at_nodes(const Brdf& brdf, bool both_orders) {
 
 TEST(Tabulate, HoldsTheMeanOfBothOrdersAtItsNodes) {
   expect_the_file_at_nodes(
-      TabulatedBrdf(std::make_shared<const HalfDifferenceTable>(tabulate(measured(), coarse()))), true);
+      measured(), TabulatedBrdf(std::make_shared<const HalfDifferenceTable>(tabulate(measured(), coarse()))),
+      true);
+}
+
+TEST(Tabulate, TheOrientedTableHoldsEachOrderAtItsNodes) {
+  const MeasuredBrdf file = test::not_reciprocal();
+  const auto table = std::make_shared<const HalfDifferenceTable>(tabulate_oriented(file, coarse()));
+  expect_the_file_at_nodes(file, TabulatedBrdf(table), false);
+}
+
+TEST(Tabulate, OddTermsAreThereOnlyWhereBothOrdersWereMeasured) {
+  const MeasuredBrdf file = test::not_reciprocal();
+  const HalfDifferenceTable table = tabulate_oriented(file, coarse());
+  const HalfDifferenceGrid& grid = table.grid;
+  int both = 0, not_both = 0;
+  for (int h = 1; h < grid.n_theta_h; ++h) {
+    for (int d = 1; d < grid.n_theta_d; ++d) {
+      for (int p = 0; p < grid.n_phi_d; ++p) {
+        const DirectionPair pair = from_half_difference({grid.theta_h(h), grid.theta_d(d), grid.phi_d(p)});
+        if (!(pair.wo.z > 0 && pair.wi.z > 0)) continue;
+        const auto there = file.footprint(pair.wo, pair.wi), back = file.footprint(pair.wi, pair.wo);
+        if (there && back && there->measured && back->measured) {
+          ++both;
+        } else {
+          ++not_both;
+          EXPECT_EQ(table.odd[grid.index(h, d, p) * table.axis.size()], 0) << h << ' ' << d << ' ' << p;
+        }
+      }
+    }
+  }
+  EXPECT_GT(both, 1000);
+  EXPECT_GT(not_both, 300);
 }
 
 TEST(Tabulate, ThePlainTableHoldsOneOrderAtItsNodes) {
   const auto table = std::make_shared<const HalfDifferenceTable>(tabulate_plain(measured(), coarse()));
-  expect_the_file_at_nodes(PlainTableBrdf(table), false);
+  expect_the_file_at_nodes(measured(), PlainTableBrdf(table), false);
   EXPECT_TRUE(std::isnan(table->q[table->grid.index(29, 29, 0) * 2])) << "below the horizon there is nothing";
 }
 
