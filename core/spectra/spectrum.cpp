@@ -91,6 +91,12 @@ Float SellmeierSpectrum::at(Float lambda_nm) const {
   return static_cast<Float>(double(scale) * n);
 }
 
+Float CauchySpectrum::at(Float lambda_nm) const {
+  const double inverse_square = 1 / sqr(double(lambda_nm) * 1e-3);
+  const double n = double(a) + (double(b_um2) + double(c_um4) * inverse_square) * inverse_square;
+  return static_cast<Float>(double(scale) * n);
+}
+
 Float Spectrum::at(Float lambda_nm) const {
   return std::visit([&](const auto& s) { return s.at(lambda_nm); }, v_);
 }
@@ -112,6 +118,8 @@ bool Spectrum::is_constant() const {
     return s->scale == 0 || (s->c[0] == 0 && s->c[1] == 0);
   if (const auto* s = std::get_if<SellmeierSpectrum>(&v_))
     return s->scale == 0 || s->b == std::array<Float, 3>{};
+  if (const auto* s = std::get_if<CauchySpectrum>(&v_))
+    return s->scale == 0 || (s->b_um2 == 0 && s->c_um4 == 0);
   return false;
 }
 

@@ -72,11 +72,18 @@ struct SellmeierSpectrum {
   [[nodiscard]] Float at(Float lambda_nm) const;
 };
 
+/// scale · n with n = a + b / λ² + c / λ⁴, λ in [µm]: Cauchy's equation, good for glass in visible light.
+struct CauchySpectrum {
+  Float a = 1, b_um2 = 0, c_um4 = 0;
+  Float scale = 1;
+  [[nodiscard]] Float at(Float lambda_nm) const;
+};
+
 /// A closed sum of the above; immutable, copyable.
 class Spectrum {
  public:
   using Variant = std::variant<ConstantSpectrum, TabulatedSpectrum, BlackbodySpectrum, SigmoidSpectrum,
-                               RgbIlluminantSpectrum, SellmeierSpectrum>;
+                               RgbIlluminantSpectrum, SellmeierSpectrum, CauchySpectrum>;
   Spectrum() : v_(ConstantSpectrum{0}) {}
   template <typename T>
   requires std::is_constructible_v<Variant, T> Spectrum(T s)
@@ -105,7 +112,8 @@ enum class SpectrumRole {
 
 /// Reads the JSON forms of docs/scene-format.md: a number; {"rgb": [r,g,b]}; {"wavelengths_nm": [...],
 /// "values": [...]}; {"file": "x.spd", "column": 1}; {"blackbody_K": T, "scale": s}; {"illuminant": "D65" |
-/// "A" | "E", "scale": s} (1 at 560 nm); {"sellmeier": {"b": [3], "c_um2": [3]}}. Every form takes "scale".
+/// "A" | "E", "scale": s} (1 at 560 nm); {"sellmeier": {"b": [3], "c_um2": [3]}};
+/// {"cauchy": {"a": n, "b_um2": b, "c_um4": c}}. Every form takes "scale".
 /// Problems are recorded in the document.
 Spectrum parse_spectrum(const JsonValue& json, SpectrumRole role, const Spectrum& fallback = {});
 

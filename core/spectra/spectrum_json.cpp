@@ -129,10 +129,20 @@ MaybeSpectrum parse_sellmeier(const JsonValue& json) {
   return s;
 }
 
+MaybeSpectrum parse_cauchy(const JsonValue& json) {
+  constexpr NumberRange kCoefficient{.min = -kLargest, .max = kLargest};
+  CauchySpectrum s;
+  s.a = static_cast<Float>(json.require("a").number(1, kCoefficient));
+  s.b_um2 = static_cast<Float>(json.get("b_um2").number(0, kCoefficient));
+  s.c_um4 = static_cast<Float>(json.get("c_um4").number(0, kCoefficient));
+  json.reject_unknown_keys();
+  return s;
+}
+
 /// A source's spectrum is no reflectance, and a refractive index is neither.
 bool has_meaning(const JsonValue& json, std::string_view form, SpectrumRole role) {
   const bool is_source = form == "blackbody_K" || form == "illuminant";
-  const bool is_index = form == "sellmeier";
+  const bool is_index = form == "sellmeier" || form == "cauchy";
   if (is_source && role != SpectrumRole::kEmission) {
     json.error("is the spectrum of a light, which has no meaning here");
     return false;
@@ -153,6 +163,7 @@ MaybeSpectrum parse_form(const JsonValue& json, std::string_view form, SpectrumR
   if (form == "file") return parse_file(value, json.get("column"), range);
   if (form == "illuminant") return parse_illuminant(value);
   if (form == "sellmeier") return parse_sellmeier(value);
+  if (form == "cauchy") return parse_cauchy(value);
   const double kelvin = value.number(0, {.min = 0, .max = 1e9, .min_open = true});
   if (kelvin == 0) return std::nullopt;
   return BlackbodySpectrum{static_cast<Float>(kelvin), 1};
@@ -167,14 +178,14 @@ void report_missing_form(const JsonValue& json) {
     json.error(
         "expected one of \"rgb\", \"wavelengths_nm\" and \"values\", \"file\", \"blackbody_K\", "
         "\"illuminant\", "
-        "\"sellmeier\"");
+        "\"sellmeier\", \"cauchy\"");
   }
   json.reject_unknown_keys();
 }
 
 MaybeSpectrum parse_object(const JsonValue& json, SpectrumRole role) {
-  constexpr std::string_view kForms[] = {"rgb",         "wavelengths_nm", "file",
-                                         "blackbody_K", "illuminant",     "sellmeier"};
+  constexpr std::string_view kForms[] = {"rgb",        "wavelengths_nm", "file",  "blackbody_K",
+                                         "illuminant", "sellmeier",      "cauchy"};
   const JsonValue json_scale = json.get("scale");
   const double scale = json_scale.number(1, {.min = 0, .max = kLargest});
   std::string_view form;

@@ -53,6 +53,9 @@ TEST(SpectrumJson, EveryFormIsRead) {
                                          "c_um2": [0.00600069867, 0.0200179144, 103.560653]}})",
                        unbounded, 587.5618f),
               1.5168, 5e-6);
+  EXPECT_EQ(value_at(R"({"cauchy": {"a": 1.5, "b_um2": 0.25}})", unbounded, 500), 2.5f);
+  EXPECT_EQ(value_at(R"({"cauchy": {"a": 1.5, "c_um4": 0.0625, "b_um2": 0}, "scale": 2})", unbounded, 500),
+            5);
 }
 
 TEST(SpectrumJson, EmissionOfRgbHasThatColour) {

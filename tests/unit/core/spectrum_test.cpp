@@ -22,9 +22,13 @@ const SellmeierSpectrum kBk7{{Float(1.03961212), Float(0.231792344), Float(1.010
                              {Float(0.00600069867), Float(0.0200179144), Float(103.560653)}};
 
 std::vector<Spectrum> one_of_each() {
-  return {Spectrum::constant(Float(0.3)),       TabulatedSpectrum({400, 410, 450, 700}, {1, 5, 2, 4}),
-          BlackbodySpectrum{4000, Float(1e-4)}, uplift_reflectance({0.8, 0.3, 0.1}),
-          uplift_emission({2, 3, 0.5}),         kBk7};
+  return {Spectrum::constant(Float(0.3)),
+          TabulatedSpectrum({400, 410, 450, 700}, {1, 5, 2, 4}),
+          BlackbodySpectrum{4000, Float(1e-4)},
+          uplift_reflectance({0.8, 0.3, 0.1}),
+          uplift_emission({2, 3, 0.5}),
+          kBk7,
+          CauchySpectrum{Float(1.5046), Float(0.0042), Float(1e-5)}};
 }
 
 TEST(Spectrum, TabulatedIsLinearAndHoldsItsEnds) {  // hard case H13: 300 and 1100 nm
@@ -96,6 +100,23 @@ TEST(Spectrum, SellmeierGivesBk7) {
   EXPECT_NEAR(kBk7.at(Float(656.2725)), 1.51432, 5e-6);
 }
 
+TEST(Spectrum, CauchyIsAPolynomialOfTheInverseSquareInMicrometres) {
+  const CauchySpectrum s{.a = Float(1.5), .b_um2 = Float(0.01), .c_um4 = Float(0.001), .scale = 2};
+  EXPECT_NEAR(s.at(500), 2 * (1.5 + 0.01 * 4 + 0.001 * 16), 1e-6);
+  EXPECT_NEAR(s.at(1000), 2 * (1.5 + 0.01 + 0.001), 1e-6);
+}
+
+TEST(Spectrum, CauchyThroughThreeLinesGivesBk7Between) {
+  // Fitted to n_d, n_F, n_C of the catalogue; its n_e at 546.074 nm is 1.51872.
+  const double x[3] = {1 / (0.5875618 * 0.5875618), 1 / (0.4861327 * 0.4861327), 1 / (0.6562725 * 0.6562725)};
+  const double y[3] = {1.51680, 1.52238, 1.51432};
+  const double first = (y[1] - y[0]) / (x[1] - x[0]), second = (y[2] - y[0]) / (x[2] - x[0]);
+  const double c = (first - second) / (x[1] - x[2]), b = first - c * (x[0] + x[1]);
+  const CauchySpectrum s{static_cast<Float>(y[0] - (b + c * x[0]) * x[0]), static_cast<Float>(b),
+                         static_cast<Float>(c)};
+  EXPECT_NEAR(s.at(Float(546.074)), 1.51872, 2e-5);  // 2e-5: the catalogue's last digit, thrice over
+}
+
 TEST(Spectrum, SellmeierIsOneWhereTheSumIsNegativeOrAtAPole) {
   const SellmeierSpectrum pole{{1, 0, 0}, {Float(0.25), 0, 0}};
   EXPECT_EQ(pole.at(499), 1);
@@ -131,7 +152,8 @@ TEST(Spectrum, OnlyConstantsAreConstant) {
   EXPECT_TRUE(Spectrum(TabulatedSpectrum({400, 500}, {2, 2})).is_constant());
   EXPECT_TRUE(Spectrum(uplift_reflectance({0.4, 0.4, 0.4})).is_constant());
   EXPECT_TRUE(Spectrum(SellmeierSpectrum{}).is_constant());
-  for (std::size_t i = 1; i < 6; ++i) EXPECT_FALSE(one_of_each()[i].is_constant()) << i;
+  EXPECT_TRUE(Spectrum(CauchySpectrum{.a = Float(1.5)}).is_constant());
+  for (std::size_t i = 1; i < one_of_each().size(); ++i) EXPECT_FALSE(one_of_each()[i].is_constant()) << i;
 }
 
 TEST(Spectrum, MaximumBoundsEveryValue) {
