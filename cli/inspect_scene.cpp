@@ -53,6 +53,9 @@ TypeAndDetail type_and_detail(const MaterialDesc& material) {
                  [](const Dielectric&) -> TypeAndDetail {
                    return {"dielectric", ""};
                  },
+                 [](const RoughDielectric& d) -> TypeAndDetail {
+                   return {"rough dielectric", text_of(d.ggx())};
+                 },
                  [](const Glossy& g) -> TypeAndDetail {
                    return {"glossy", fmt::format("{}, specular_scale {}, diffuse_scale {}", text_of(g.ggx),
                                                  g.specular_scale, g.diffuse_scale)};

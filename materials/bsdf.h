@@ -17,6 +17,8 @@ namespace spectrace {
 struct ShadingPoint {
   const SampledWavelengths& lambda;
   Vec2 uv{};
+  /// 1 where the texture's v grows towards the frame's +y, -1 where it is mirrored: for normal maps.
+  Float v_sign = 1;
 };
 
 enum class Lobe : std::uint8_t { kDiffuse, kSpecular };
@@ -48,6 +50,10 @@ struct BsdfSample {
   /// (η_o / η_i)² of a refraction, part of `weight`: radiance is squeezed into a smaller cone and comes back
   /// when the path leaves, so that roulette must not count it as loss (Veach 1997, sec. 5.3.2).
   Float radiance_scale = 1;
+  /// Straight on through a hole (a delta lobe, wi = -wo): no vertex of the path. Light is let through there
+  /// for shadow rays too (Material's pass_through), so that what competes with light sampling stays as it
+  /// was.
+  bool passes = false;
 };
 
 /// The random numbers of one BSDF sample, each in [0, 1].
@@ -63,7 +69,7 @@ struct BsdfRandom {
 /// - evaluate_lobes: the same value, by lobe.
 /// - is_delta: every lobe is a delta distribution, evaluate() is always 0.
 /// Reflecting materials are one-sided: both directions must have z > 0. The caller flips frames for
-/// two-sided shading.
+/// two-sided shading, except of those that tell their sides apart (Material's keeps_sides).
 template <typename T>
 concept Bsdf = requires(const T& bsdf, Vec3 wo, Vec3 wi, const ShadingPoint& at, const BsdfRandom& u) {
   { bsdf.evaluate(wo, wi, at) } -> std::same_as<BsdfValue>;

@@ -20,6 +20,10 @@ bool is_delta(const Material& material) {
   return std::visit([](const auto& m) { return m.is_delta(); }, material);
 }
 
-bool is_transmissive(const Material& material) { return std::holds_alternative<Dielectric>(material); }
+bool is_transmissive(const Material& material) {
+  return std::holds_alternative<Dielectric>(material) || std::holds_alternative<RoughDielectric>(material);
+}
+
+bool keeps_sides(const Material& material) { return is_transmissive(material); }
 
 }  // namespace spectrace

@@ -20,11 +20,15 @@ constexpr NumberRange kFilmEta{.min = 1};
 // Beyond 100 µm interference is finer than any wavelength step of this program.
 constexpr NumberRange kFilmThickness{.min = 0, .max = 1e5};
 
+// The widest range of wavelengths that optical constants are looked at in.
+constexpr WavelengthRange kOptical{.min_nm = 200, .max_nm = 2000};
+
+Float min_over(const Spectrum& s, WavelengthRange range) { return -s.scaled(-1).max_over(range); }
+
 /// A refractive index or an extinction whose values lie in `range`.
 Spectrum parse_optical_constant(const JsonValue& json, NumberRange range) {
   Spectrum s = parse_spectrum(json, SpectrumRole::kUnbounded, Spectrum::constant(1));
-  // The least value over the widest range of wavelengths a scene may ask for.
-  const Float minimum = -s.scaled(-1).max_over({.min_nm = 200, .max_nm = 2000});
+  const Float minimum = min_over(s, kOptical);
   if (!range.contains(minimum)) json.error("must lie in " + range.text() + " at every wavelength");
   return s;
 }
@@ -79,11 +83,29 @@ Ggx parse_roughness(const JsonValue& json) {
   return ggx;
 }
 
+bool is_smooth(const JsonValue& roughness) {
+  return !roughness.exists() || (roughness.is_number() && roughness.number(0) == 0);
+}
+
+decltype(MaterialDesc::kind) parse_dielectric(const JsonValue& json) {
+  const JsonValue json_eta = json.require("eta");
+  Spectrum eta = parse_optical_constant(json_eta, kPositive);
+  const JsonValue roughness = json.get("roughness");
+  if (is_smooth(roughness)) return Dielectric{std::move(eta)};
+  // Asked of visible light alone: Sellmeier's equation has poles in the ultraviolet.
+  const bool bends = min_over(eta, {}) >= 1 + kMinRoughContrast || eta.max_over({}) <= 1 - kMinRoughContrast;
+  if (json_eta.exists() && !bends) {
+    json_eta.error(fmt::format(
+        "must stay {} away from 1, on one side, at every visible wavelength where the surface is rough",
+        kMinRoughContrast));
+  }
+  return RoughDielectric(std::move(eta), parse_roughness(roughness));
+}
+
 decltype(MaterialDesc::kind) parse_conductor(const JsonValue& json) {
   ConductorFresnel fresnel = parse_conductor_fresnel(json);
   const JsonValue roughness = json.get("roughness");
-  const bool is_smooth = !roughness.exists() || (roughness.is_number() && roughness.number(0) == 0);
-  if (is_smooth) return SmoothConductor{std::move(fresnel)};
+  if (is_smooth(roughness)) return SmoothConductor{std::move(fresnel)};
   return RoughConductor{std::move(fresnel), parse_roughness(roughness)};
 }
 
@@ -159,9 +181,7 @@ SeparatedDesc parse_separated(const JsonValue& json) {
 
 decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string& type) {
   if (type == "conductor") return parse_conductor(json);
-  if (type == "dielectric") {
-    return Dielectric{parse_optical_constant(json.require("eta"), kPositive)};
-  }
+  if (type == "dielectric") return parse_dielectric(json);
   if (type == "glossy") return parse_glossy(json);
   if (type == "diffractive") return parse_diffractive(json);
   if (type == "measured") return MeasuredDesc{json.require("file").path()};

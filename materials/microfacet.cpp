@@ -39,7 +39,29 @@ Ggx::Reflection Ggx::reflect(Vec3 wo, Vec3 wi) const {
   return r;
 }
 
-Vec3 Ggx::sample(Vec3 wo, Vec2 u) const {
+Ggx::Refraction Ggx::refract(Vec3 wo, Vec3 wi, Float eta) const {
+  if (!(wo.z > 0 && wi.z < 0)) return {};
+  // Walter et al. 2007, eq. 16, turned to the side of wo.
+  const Vec3 sum = wo + wi * eta;
+  const Vec3 half = eta > 1 ? -sum : sum;
+  const Float half2 = length_squared(half);
+  if (!(half.z > 0) || !(half2 > 0)) return {};
+  const Vec3 wm = half / std::sqrt(half2);
+  const Float cos_o = dot(wo, wm), cos_i = dot(wi, wm);
+  if (!(cos_o > 0 && cos_i < 0)) return {};  // seen or left through its back: ibid. eqs. 21 and 23
+  Refraction r;
+  r.cos_half = std::min(cos_o, Float(1));
+  // D_visible |dωm/dωi|: Heitz 2018, eqs. 1-3; Walter et al. 2007, eq. 17, where the sum in the denominator
+  // is the length of `half`.
+  const Float visible = 2 * distribution(wm) * cos_o / (wo.z + stretch(*this, wo));
+  r.pdf = visible * (sqr(eta) * -cos_i / half2);
+  // Ibid. eq. 21 over that density leaves G1(wi) / eta²: masking and shadowing on the two sides of the
+  // surface taken for independent (ibid. eq. 23).
+  r.value_cos = r.pdf * masking(-wi) / sqr(eta);
+  return r;
+}
+
+Vec3 Ggx::visible_normal(Vec3 wo, Vec2 u) const {
   // Stretched so that alpha = 1, the visible normals of the half ball are halfway between wo and the points
   // of a spherical cap: Dupuy & Benyoub 2023, listing 3. The same density as Heitz 2018.
   const Vec3 w = normalize({alpha_x * wo.x, alpha_y * wo.y, wo.z});
@@ -48,7 +70,11 @@ Vec3 Ggx::sample(Vec3 wo, Vec2 u) const {
   const Float sin_theta = safe_sqrt(one_minus_z * one_plus_z);  // of the cap point, without cancellation
   const Float phi = 2 * kPi * u.x;
   const Vec3 h{sin_theta * std::cos(phi) + w.x, sin_theta * std::sin(phi) + w.y, (1 - u.y) * (1 + w.z)};
-  const Vec3 wm{alpha_x * h.x, alpha_y * h.y, h.z};
+  return {alpha_x * h.x, alpha_y * h.y, h.z};
+}
+
+Vec3 Ggx::sample(Vec3 wo, Vec2 u) const {
+  const Vec3 wm = visible_normal(wo, u);
   const Float wm2 = length_squared(wm);
   if (!(wm2 > 0)) return {0, 0, -1};  // u.y = 1 can land opposite to w: no facet
   return normalize(wm * (2 * dot(wo, wm) / wm2) - wo);

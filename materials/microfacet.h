@@ -27,8 +27,20 @@ struct Ggx {
   };
   /// Zeros unless both directions lie above the horizon.
   [[nodiscard]] Reflection reflect(Vec3 wo, Vec3 wi) const;
-  /// The direction wo is mirrored into by a facet drawn from those visible to wo; it may lie below the
-  /// horizon. `wo.z` > 0, `u` in [0, 1]².
+
+  struct Refraction {
+    Float value_cos = 0;  ///< f · |cosθi| [1/sr] for a transmittance of 1, of radiance: with 1/eta² in it
+    Float pdf = 0;        ///< density [1/sr] of wi where the facet is drawn from those visible to wo
+    Float cos_half = 0;   ///< wo·wm > 0, for the Fresnel factor
+  };
+  /// `wo.z` > 0, `wi.z` < 0, `eta` = index beyond the interface over that on wo's side, not 1. Zeros where no
+  /// facet refracts one direction into the other.
+  [[nodiscard]] Refraction refract(Vec3 wo, Vec3 wi, Float eta) const;
+
+  /// The normal of a facet drawn from those visible to wo, of any length; {} where u is drawn from the rim
+  /// opposite to wo. `wo.z` > 0, `u` in [0, 1]².
+  [[nodiscard]] Vec3 visible_normal(Vec3 wo, Vec2 u) const;
+  /// The direction wo is mirrored into by such a facet; it may lie below the horizon.
   [[nodiscard]] Vec3 sample(Vec3 wo, Vec2 u) const;
 };
 

@@ -174,7 +174,7 @@ class PathTracer {
   [[nodiscard]] Vertex make_vertex(SurfacePoint point, Vec3 wo) const {
     const Material& material = scene_.materials[point.material];
     bool flip = dot(wo, point.normal_g) < 0;
-    if constexpr (kFeatures.transmission) flip = flip && !is_transmissive(material);
+    if constexpr (kFeatures.transmission) flip = flip && !keeps_sides(material);
     if (flip) {
       point.normal_g = -point.normal_g;
       point.normal_s = -point.normal_s;

@@ -165,6 +165,29 @@ void add_analytic(std::vector<BsdfCase>& cases) {
   add("BuiltInPearlescent", [] { return built_in("pearlescent"); });
 }
 
+void add_rough_glass(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](std::string name, Spectrum eta, Ggx ggx) {
+    cases.push_back({.name = "RoughGlass" + std::move(name),
+                     .make = [eta, ggx] { return RoughDielectric(eta, ggx); },
+                     .is_reciprocal = true,
+                     .conserves_energy = true,
+                     .specular_step = 1e-5,
+                     .interior_eta = eta,
+                     .is_two_sided = true});
+  };
+  const Spectrum glass = Spectrum::constant(Float(1.5));
+  // SCHOTT N-SF11 (catalogue, 2017): the lanes' lobes lie apart by as much as they are wide at alpha 0.02.
+  const SellmeierSpectrum flint{.b = {Float(1.73759695), Float(0.313747346), Float(1.89878101)},
+                                .c_um2 = {Float(0.013188707), Float(0.0623068142), Float(155.23629)}};
+  add("Alpha002", glass, {Float(0.02), Float(0.02)});
+  add("Alpha03", glass, {Float(0.3), Float(0.3)});
+  add("Alpha1", glass, {1, 1});
+  add("Anisotropic", glass, {Float(0.08), Float(0.4)});
+  add("Bubble", Spectrum::constant(Float(0.75)), {Float(0.2), Float(0.2)});
+  add("DispersiveNarrow", flint, {Float(0.02), Float(0.02)});
+  add("DispersiveWide", flint, {Float(0.3), Float(0.3)});
+}
+
 /// Linear in sqrt(theta_h): 1e-6 rad is a twentieth of the first cell of these coarse grids.
 constexpr double kSeparatedStep = 1e-4;
 
@@ -273,6 +296,7 @@ const std::vector<BsdfCase>& bsdf_cases() {
   static const std::vector<BsdfCase> cases = [] {
     std::vector<BsdfCase> c;
     add_analytic(c);
+    add_rough_glass(c);
     add_separated(c);
     add_forms_of_pearlescent(c);
     add_acquired(c);

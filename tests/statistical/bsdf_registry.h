@@ -22,6 +22,9 @@ struct BsdfCase {
   /// case H5). Measured tables promise nothing: their nodes at theta_h = 0 were measured one by one, at all
   /// azimuths.
   std::optional<double> specular_step = std::nullopt;
+  /// Index of what lies behind the surface, over that before it.
+  Spectrum interior_eta = Spectrum::constant(1);
+  bool is_two_sided = false;  ///< keeps_sides() of what it makes
 
   friend std::ostream& operator<<(std::ostream& out, const BsdfCase& c) { return out << c.name; }
 };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/math/math.h"
 #include "tests/statistical/bsdf_registry.h"
@@ -27,6 +28,9 @@ inline Vec3 direction(double theta_deg, double phi_rad) {
   return {Float(std::sin(theta) * std::cos(phi_rad)), Float(std::sin(theta) * std::sin(phi_rad)),
           Float(std::cos(theta))};
 }
+
+/// Mirrored below the horizon where `side` is -1.
+inline Vec3 on_side(Vec3 w, int side) { return {w.x, w.y, Float(side) * w.z}; }
 
 inline BsdfRandom random_numbers(TestRandom& random) {
   const Float lobe = random.uniform();
@@ -52,9 +56,22 @@ class EveryBsdf : public ::testing::TestWithParam<BsdfCase> {
   void SetUp() override {
     material_ = GetParam().make();
     if (!material_) GTEST_SKIP() << GetParam().name << " needs the shared data (set SPECTRACE_DATA)";
+    ASSERT_EQ(keeps_sides(*material_), GetParam().is_two_sided);
   }
   [[nodiscard]] const Material& material() const { return *material_; }
   [[nodiscard]] ShadingPoint at() const { return {.lambda = test_wavelengths()}; }
+  /// The sides it is asked from: 1 above, -1 below.
+  [[nodiscard]] std::vector<int> sides() const {
+    return keeps_sides(material()) ? std::vector{1, -1} : std::vector{1};
+  }
+  /// On either side where it tells them apart.
+  [[nodiscard]] Vec3 random_side(Vec3 w, TestRandom& random) const {
+    return keeps_sides(material()) && random.uniform() < Float(0.5) ? on_side(w, -1) : w;
+  }
+  /// Radiance over the square of the index is what an interface conserves (Veach 1997, sec. 5.2).
+  [[nodiscard]] double index_squared(Vec3 w, int lane) const {
+    return w.z < 0 ? sqr(double(GetParam().interior_eta.at(test_wavelengths().lambda_nm(lane)))) : 1;
+  }
 
  private:
   std::optional<Material> material_;

@@ -133,6 +133,12 @@ std::vector<NamedScene> scene_zoo() {
   zoo.push_back(
       {"dispersing glass", ball_scene(glass("ball", kBk7), glossy("floor", Spectrum::constant(Float(0.5))))});
   zoo.back().scene.shapes.push_back(lamp());
+  zoo.push_back(
+      {"rough dispersing glass",
+       ball_scene({.name = "ball", .where = "", .kind = RoughDielectric(kBk7, {Float(0.1), Float(0.3)})},
+                  lambert("floor", Float(0.5)))});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
   zoo.push_back({"instances", instance_scene()});
   zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});
   zoo.back().scene.shapes.push_back(lamp());

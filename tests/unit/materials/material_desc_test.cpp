@@ -55,6 +55,20 @@ TEST(MaterialDesc, ReadsEveryType) {
   EXPECT_EQ(separated.model, SeparationModel::kFresnel);
 }
 
+TEST(MaterialDesc, ReadsRoughGlass) {
+  const auto rough = std::get<RoughDielectric>(
+      parse(R"({"name": "a", "type": "dielectric", "eta": 1.5, "roughness": [0.1, 0.4]})").kind);
+  EXPECT_EQ(rough.eta().at(500), Float(1.5));
+  EXPECT_EQ(rough.ggx().alpha_y, Float(0.4));
+  EXPECT_TRUE(std::holds_alternative<Dielectric>(
+      parse(R"({"name": "a", "type": "dielectric", "eta": 1.5, "roughness": 0})").kind));
+  expect_problem(R"({"name": "a", "type": "dielectric", "eta": 1.005, "roughness": 0.1})", "away from 1");
+  expect_problem(
+      R"({"name": "a", "type": "dielectric", "eta": {"wavelengths_nm": [400, 700], "values": [0.9, 1.1]}, "roughness": 0.1})",
+      "away from 1");
+  EXPECT_EQ(problems(R"({"name": "a", "type": "dielectric", "eta": 0.75, "roughness": 0.1})"), "");
+}
+
 TEST(MaterialDesc, ReadsDiffractiveMaterials) {
   const std::string head = R"({"name": "a", "type": "diffractive", "f0": 0.9, "roughness": 0.1, )";
   const auto bare = std::get<Diffractive>(

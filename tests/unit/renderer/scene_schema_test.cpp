@@ -82,6 +82,8 @@ Json everything() {
       {"name": "brushed", "type": "conductor", "roughness": [0.1, 0.3], "k": 3,
        "eta": {"wavelengths_nm": [400, 700], "values": [1.5, 0.2]}},
       {"name": "glass", "type": "dielectric", "eta": {"sellmeier": {"b": [1.7, 0.3, 1.9], "c_um2": [0.01, 0.06, 155]}}},
+      {"name": "ground", "type": "dielectric", "eta": {"cauchy": {"a": 1.5, "b_um2": 0.004, "c_um4": 1e-5}},
+       "roughness": 0.2},
       {"name": "coat", "type": "glossy", "reflectance": 0.3, "f0": 0.04, "roughness": 0.1, "specular_scale": 0.4,
        "diffuse_scale": 0.6},
       {"name": "flakes", "type": "diffractive", "reflectance": 0.3, "eta": 1.2, "k": 6, "roughness": 0.1,
@@ -124,7 +126,8 @@ bool is_beyond_schema(const std::string& problem) {
       "wavelengths must increase",
       "one for each wavelength",
       "at every wavelength",  // minimum of a spectrum
-      "must be at most 1",    // sum of two shares
+      "at every visible wavelength",
+      "must be at most 1",  // sum of two shares
       "a triangle without positions",
       "in [0, 2], got",  // indices of three positions
   };
