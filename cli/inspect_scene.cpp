@@ -60,6 +60,9 @@ TypeAndDetail type_and_detail(const MaterialDesc& material) {
                    return {"glossy", fmt::format("{}, specular_scale {}, diffuse_scale {}", text_of(g.ggx),
                                                  g.specular_scale, g.diffuse_scale)};
                  },
+                 [](const Plastic& p) -> TypeAndDetail {
+                   return {"plastic", p.has_delta_lobe() ? "smooth" : fmt::format("alpha {}", p.alpha())};
+                 },
                  [](const Diffractive& d) -> TypeAndDetail {
                    return {"diffractive",
                            fmt::format("{}, micro-roughness {} nm rms over {} nm, specular_scale {}, "

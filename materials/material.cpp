@@ -20,6 +20,11 @@ bool is_delta(const Material& material) {
   return std::visit([](const auto& m) { return m.is_delta(); }, material);
 }
 
+bool has_delta_lobe(const Material& material) {
+  const auto* plastic = std::get_if<Plastic>(&material);
+  return plastic != nullptr ? plastic->has_delta_lobe() : is_delta(material);
+}
+
 bool is_transmissive(const Material& material) {
   return std::holds_alternative<Dielectric>(material) || std::holds_alternative<RoughDielectric>(material);
 }

@@ -18,6 +18,7 @@
 #include "materials/lambert.h"
 #include "materials/measured_brdf.h"
 #include "materials/paired_brdf.h"
+#include "materials/plastic.h"
 #include "materials/rough_dielectric.h"
 #include "materials/separated_brdf.h"
 #include "materials/tabulated_brdf.h"
@@ -27,13 +28,15 @@ namespace spectrace {
 /// Visited once a path vertex; immutable, shared between threads.
 using Material =
     std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, Diffractive, MeasuredBrdf,
-                 SeparatedBrdf, TabulatedBrdf, AnalyticBrdf, PairedBrdf, RoughDielectric>;
+                 SeparatedBrdf, TabulatedBrdf, AnalyticBrdf, PairedBrdf, RoughDielectric, Plastic>;
 
 [[nodiscard]] BsdfValue evaluate(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
 [[nodiscard]] LobeValues evaluate_lobes(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
 [[nodiscard]] std::optional<BsdfSample> sample(const Material& material, Vec3 wo, const BsdfRandom& u,
                                                const ShadingPoint& at);
 [[nodiscard]] bool is_delta(const Material& material);
+/// Has a delta lobe, alone or beside others.
+[[nodiscard]] bool has_delta_lobe(const Material& material);
 /// Light is refracted through it.
 [[nodiscard]] bool is_transmissive(const Material& material);
 /// Tells its two sides apart: such a material is never flipped to face the viewer.
@@ -57,7 +60,7 @@ struct MaterialDesc {
   std::string name;
   std::string where;  ///< of the JSON object, for messages at build time
   std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, Diffractive, MeasuredDesc,
-               SeparatedDesc, RoughDielectric>
+               SeparatedDesc, RoughDielectric, Plastic>
       kind;
 };
 

@@ -170,6 +170,19 @@ Diffractive parse_diffractive(const JsonValue& json) {
   return diffractive;
 }
 
+Plastic parse_plastic(const JsonValue& json) {
+  Texture reflectance = parse_texture(json.require("reflectance"));
+  const JsonValue json_eta = json.require("eta");
+  Spectrum eta = parse_optical_constant(json_eta, kPositive);
+  if (constexpr NumberRange kCoat{.min = 1, .max = kMaxCoatEta};
+      !kCoat.contains(min_over(eta, {})) || !kCoat.contains(eta.max_over({}))) {
+    json_eta.error("must lie in " + kCoat.text() + " at every visible wavelength");
+  }
+  const JsonValue roughness = json.get("roughness");
+  const double alpha = is_smooth(roughness) ? 0 : roughness.number(0, kAlphaRange);
+  return {std::move(reflectance), std::move(eta), static_cast<Float>(alpha)};
+}
+
 SeparatedDesc parse_separated(const JsonValue& json) {
   SeparatedDesc separated{.file = json.require("file").path()};
   const std::string model = json.get("model").choice(
@@ -183,6 +196,7 @@ decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string
   if (type == "conductor") return parse_conductor(json);
   if (type == "dielectric") return parse_dielectric(json);
   if (type == "glossy") return parse_glossy(json);
+  if (type == "plastic") return parse_plastic(json);
   if (type == "diffractive") return parse_diffractive(json);
   if (type == "measured") return MeasuredDesc{json.require("file").path()};
   if (type == "separated") return parse_separated(json);
@@ -247,7 +261,8 @@ MaterialDesc parse_material(const JsonValue& json) {
   material.where = json.where();
   material.name = json.require("name").string();
   const std::string type = json.require("type").choice(
-      "", {"lambert", "conductor", "dielectric", "glossy", "diffractive", "measured", "separated"});
+      "",
+      {"lambert", "conductor", "dielectric", "glossy", "plastic", "diffractive", "measured", "separated"});
   if (type.empty()) return material;  // recorded; what the other keys should be is unknown
   material.kind = parse_kind(json, type);
   json.reject_unknown_keys();

@@ -14,6 +14,7 @@ bool is_textured(const Material& material) {
     return lambert->reflectance.is_textured();
   }
   if (const auto* glossy = std::get_if<Glossy>(&material)) return glossy->reflectance.is_textured();
+  if (const auto* plastic = std::get_if<Plastic>(&material)) return plastic->reflectance().is_textured();
   const auto* diffractive = std::get_if<Diffractive>(&material);
   return diffractive != nullptr && diffractive->reflectance.is_textured();
 }

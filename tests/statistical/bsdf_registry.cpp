@@ -165,6 +165,24 @@ void add_analytic(std::vector<BsdfCase>& cases) {
   add("BuiltInPearlescent", [] { return built_in("pearlescent"); });
 }
 
+void add_plastic(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](std::string name, Spectrum base, Spectrum eta, Float alpha) {
+    cases.push_back({.name = "Plastic" + std::move(name),
+                     .make = [base, eta, alpha] { return Plastic(base, eta, alpha); },
+                     .is_reciprocal = true,
+                     .conserves_energy = true,
+                     .specular_step = 1e-5});
+  };
+  const Spectrum glass = Spectrum::constant(Float(1.5));
+  add("Smooth", ramp(Float(0.2), Float(0.8)), glass, 0);
+  add("Narrow", ramp(Float(0.2), Float(0.8)), ramp(Float(1.55), Float(1.45)), Float(0.02));
+  add("Rough", ramp(Float(0.2), Float(0.8)), glass, Float(0.4));
+  add("WhiteRough", Spectrum::constant(1), ramp(Float(1.9), Float(1.3)), 1);
+  add("White", Spectrum::constant(1), Spectrum::constant(3), Float(0.1));
+  add("Black", Spectrum::constant(0), glass, Float(0.2));  // its diffuse lobe is never chosen
+  add("Uncoated", ramp(Float(0.2), Float(0.8)), Spectrum::constant(1), Float(0.2));
+}
+
 void add_rough_glass(std::vector<BsdfCase>& cases) {
   const auto add = [&cases](std::string name, Spectrum eta, Ggx ggx) {
     cases.push_back({.name = "RoughGlass" + std::move(name),
@@ -297,6 +315,7 @@ const std::vector<BsdfCase>& bsdf_cases() {
     std::vector<BsdfCase> c;
     add_analytic(c);
     add_rough_glass(c);
+    add_plastic(c);
     add_separated(c);
     add_forms_of_pearlescent(c);
     add_acquired(c);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every BSDF of the program that is not a delta distribution, by name: what the conformance suite runs over.
+// Every BSDF of the program that is not a delta distribution alone, by name: what the conformance suite runs
+// over.
 #pragma once
 
 #include <functional>

@@ -139,6 +139,17 @@ std::vector<NamedScene> scene_zoo() {
                   lambert("floor", Float(0.5)))});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back(
+      {"plastic ball on a polished floor",
+       ball_scene(
+           {.name = "ball",
+            .where = "",
+            .kind = Plastic(Spectrum::constant(Float(0.6)), Spectrum::constant(Float(1.5)), Float(0.1))},
+           {.name = "floor",
+            .where = "",
+            .kind = Plastic(Spectrum::constant(Float(0.3)), Spectrum::constant(Float(1.5)), 0)})});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
   zoo.push_back({"instances", instance_scene()});
   zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});
   zoo.back().scene.shapes.push_back(lamp());

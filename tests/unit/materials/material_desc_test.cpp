@@ -69,6 +69,16 @@ TEST(MaterialDesc, ReadsRoughGlass) {
   EXPECT_EQ(problems(R"({"name": "a", "type": "dielectric", "eta": 0.75, "roughness": 0.1})"), "");
 }
 
+TEST(MaterialDesc, ReadsPlastic) {
+  const std::string head = R"({"name": "a", "type": "plastic", "reflectance": 0.5, )";
+  EXPECT_EQ(std::get<Plastic>(parse(head + R"("eta": 1.5, "roughness": 0.2})").kind).alpha(), Float(0.2));
+  EXPECT_TRUE(std::get<Plastic>(parse(head + R"("eta": 1.5})").kind).has_delta_lobe());
+  expect_problem(head + R"("eta": 0.9})", "must lie in [1, 4]");
+  expect_problem(head + R"("eta": 5})", "must lie in [1, 4]");
+  expect_problem(head + R"("eta": 1.5, "roughness": [0.1, 0.2]})", "/roughness");
+  expect_problem(head + R"("roughness": 0.1})", "eta");
+}
+
 TEST(MaterialDesc, ReadsDiffractiveMaterials) {
   const std::string head = R"({"name": "a", "type": "diffractive", "f0": 0.9, "roughness": 0.1, )";
   const auto bare = std::get<Diffractive>(

@@ -86,6 +86,7 @@ Json everything() {
        "roughness": 0.2},
       {"name": "coat", "type": "glossy", "reflectance": 0.3, "f0": 0.04, "roughness": 0.1, "specular_scale": 0.4,
        "diffuse_scale": 0.6},
+      {"name": "mug", "type": "plastic", "reflectance": {"rgb": [0.7, 0.1, 0.1]}, "eta": 1.5, "roughness": 0.05},
       {"name": "flakes", "type": "diffractive", "reflectance": 0.3, "eta": 1.2, "k": 6, "roughness": 0.1,
        "micro_roughness": {"rms_nm": 60, "correlation_nm": 2000, "exponent": 2.5}, "specular_scale": 0.4,
        "diffuse_scale": 0.6},
