@@ -60,8 +60,8 @@ TypeAndDetail type_and_detail(const MaterialDesc& material) {
                    return {"glossy", fmt::format("{}, specular_scale {}, diffuse_scale {}", text_of(g.ggx),
                                                  g.specular_scale, g.diffuse_scale)};
                  },
-                 [](const Plastic& p) -> TypeAndDetail {
-                   return {"plastic", p.has_delta_lobe() ? "smooth" : fmt::format("alpha {}", p.alpha())};
+                 [](const PlasticDesc& p) -> TypeAndDetail {
+                   return {"plastic", p.alpha == 0 ? "smooth" : fmt::format("alpha {}", p.alpha)};
                  },
                  [](const Diffractive& d) -> TypeAndDetail {
                    return {"diffractive",

@@ -55,12 +55,18 @@ struct SeparatedDesc {
   bool analytic = false;               ///< the analytic model instead
   std::filesystem::path directions{};  ///< as MeasuredDesc::directions
 };
+/// Plastic without the table of its coat, which takes some 50 ms to make.
+struct PlasticDesc {
+  Texture reflectance;
+  Spectrum eta = Spectrum::constant(Float(1.5));
+  Float alpha = 0;
+};
 /// Analytic materials are plain already; measured ones name their files.
 struct MaterialDesc {
   std::string name;
   std::string where;  ///< of the JSON object, for messages at build time
   std::variant<Lambert, SmoothConductor, RoughConductor, Dielectric, Glossy, Diffractive, MeasuredDesc,
-               SeparatedDesc, RoughDielectric, Plastic>
+               SeparatedDesc, RoughDielectric, PlasticDesc>
       kind;
 };
 

@@ -170,7 +170,7 @@ Diffractive parse_diffractive(const JsonValue& json) {
   return diffractive;
 }
 
-Plastic parse_plastic(const JsonValue& json) {
+PlasticDesc parse_plastic(const JsonValue& json) {
   Texture reflectance = parse_texture(json.require("reflectance"));
   const JsonValue json_eta = json.require("eta");
   Spectrum eta = parse_optical_constant(json_eta, kPositive);
@@ -248,6 +248,7 @@ struct Builder {
     }
     return with_directions(SeparatedBrdf(source, model), s.directions);
   }
+  Material operator()(const PlasticDesc& p) const { return Plastic(p.reflectance, p.eta, p.alpha); }
   template <typename Analytic>
   Material operator()(const Analytic& material) const {
     return material;

@@ -40,10 +40,10 @@ std::vector<MaterialDesc> floors() {
                           .ggx = {Float(0.4), Float(0.4)}}},
           {.name = "floor",
            .where = "",
-           .kind = Plastic(Spectrum::constant(Float(0.5)), Spectrum::constant(Float(1.5)), 0)},
+           .kind = PlasticDesc{Spectrum::constant(Float(0.5)), Spectrum::constant(Float(1.5)), 0}},
           {.name = "floor",
            .where = "",
-           .kind = Plastic(Spectrum::constant(Float(0.5)), Spectrum::constant(Float(1.5)), Float(0.3))}};
+           .kind = PlasticDesc{Spectrum::constant(Float(0.5)), Spectrum::constant(Float(1.5)), Float(0.3)}}};
 }
 
 void expect_light_sampling_unbiased(SceneDesc scene, const std::string& what) {

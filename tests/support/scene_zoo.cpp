@@ -144,10 +144,10 @@ std::vector<NamedScene> scene_zoo() {
        ball_scene(
            {.name = "ball",
             .where = "",
-            .kind = Plastic(Spectrum::constant(Float(0.6)), Spectrum::constant(Float(1.5)), Float(0.1))},
+            .kind = PlasticDesc{Spectrum::constant(Float(0.6)), Spectrum::constant(Float(1.5)), Float(0.1)}},
            {.name = "floor",
             .where = "",
-            .kind = Plastic(Spectrum::constant(Float(0.3)), Spectrum::constant(Float(1.5)), 0)})});
+            .kind = PlasticDesc{Spectrum::constant(Float(0.3)), Spectrum::constant(Float(1.5)), 0}})});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.back().scene.lights = {sky(Float(0.3))};
   zoo.push_back({"instances", instance_scene()});

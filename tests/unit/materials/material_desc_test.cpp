@@ -71,8 +71,9 @@ TEST(MaterialDesc, ReadsRoughGlass) {
 
 TEST(MaterialDesc, ReadsPlastic) {
   const std::string head = R"({"name": "a", "type": "plastic", "reflectance": 0.5, )";
-  EXPECT_EQ(std::get<Plastic>(parse(head + R"("eta": 1.5, "roughness": 0.2})").kind).alpha(), Float(0.2));
-  EXPECT_TRUE(std::get<Plastic>(parse(head + R"("eta": 1.5})").kind).has_delta_lobe());
+  EXPECT_EQ(std::get<PlasticDesc>(parse(head + R"("eta": 1.5, "roughness": 0.2})").kind).alpha, Float(0.2));
+  EXPECT_TRUE(has_delta_lobe(build_material(parse(head + R"("eta": 1.5})"))));
+  EXPECT_FALSE(has_delta_lobe(build_material(parse(head + R"("eta": 1.5, "roughness": 1})"))));
   expect_problem(head + R"("eta": 0.9})", "must lie in [1, 4]");
   expect_problem(head + R"("eta": 5})", "must lie in [1, 4]");
   expect_problem(head + R"("eta": 1.5, "roughness": [0.1, 0.2]})", "/roughness");
