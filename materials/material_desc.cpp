@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "materials/material.h"
+#include "materials/metals.h"
 #include "materials/refractive_index.h"
 
 namespace spectrace {
@@ -33,23 +34,30 @@ Spectrum parse_optical_constant(const JsonValue& json, NumberRange range) {
   return s;
 }
 
-/// "metal_file", or "eta" and "k".
+/// "metal", "metal_file", or "eta" and "k".
 void parse_index(const JsonValue& json, ConductorFresnel& fresnel) {
-  const JsonValue file = json.get("metal_file");
-  if (!file.exists()) {
+  const JsonValue metal = json.get("metal"), file = json.get("metal_file");
+  if (!metal.exists() && !file.exists()) {
     fresnel.eta = parse_optical_constant(json.require("eta"), kPositive);
     fresnel.k = parse_optical_constant(json.require("k"), kNonNegative);
     return;
   }
-  for (const char* key : {"eta", "k"}) {
-    if (const JsonValue other = json.get(key); other.exists()) {
-      other.error("\"metal_file\" already gives eta and k");
+  const std::string given = metal.exists() ? "metal" : "metal_file";
+  for (const char* key : {"metal_file", "eta", "k"}) {
+    if (const JsonValue other = json.get(key); key != given && other.exists()) {
+      other.error(fmt::format("\"{}\" already gives eta and k", given));
     }
   }
-  try {
-    RefractiveIndex index = read_refractive_index(file.path());
+  const auto take = [&](RefractiveIndex index) {
     fresnel.eta = std::move(index.eta);
     fresnel.k = std::move(index.k);
+  };
+  if (metal.exists()) {
+    if (const std::string name = metal.choice("", kMetalNames); !name.empty()) take(named_metal(name));
+    return;
+  }
+  try {
+    take(read_refractive_index(file.path()));
   } catch (const InputError& e) {
     file.error(e.diagnostics().front().text());
   }
@@ -113,7 +121,7 @@ decltype(MaterialDesc::kind) parse_conductor(const JsonValue& json) {
 SpecularFresnel parse_fresnel(const JsonValue& json) {
   const JsonValue f0 = json.get("f0");
   if (!f0.exists()) return parse_conductor_fresnel(json);
-  for (const char* key : {"eta", "k", "metal_file", "thin_film"}) {
+  for (const char* key : {"eta", "k", "metal", "metal_file", "thin_film"}) {
     if (const JsonValue other = json.get(key); other.exists()) {
       other.error(std::string("\"f0\" and \"") + key + "\" exclude each other");
     }

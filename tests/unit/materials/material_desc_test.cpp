@@ -117,6 +117,24 @@ TEST(MaterialDesc, GlossySharesTheSurfaceBetweenItsLobes) {
   EXPECT_EQ(glossy.diffuse_scale, Float(0.75));
 }
 
+TEST(MaterialDesc, KnowsMetalsByName) {
+  const auto gold = std::get<RoughConductor>(
+      parse(R"({"name": "a", "type": "conductor", "metal": "Au", "roughness": 0.2})").kind);
+  const auto file = std::get<RoughConductor>(
+      load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials/gold.json").kind);
+  for (const Float nm : {Float(400), Float(555), Float(700)}) {
+    EXPECT_NEAR(gold.fresnel.eta.at(nm), file.fresnel.eta.at(nm), 1e-5);
+    EXPECT_NEAR(gold.fresnel.k.at(nm), file.fresnel.k.at(nm), 1e-5);
+  }
+  expect_problem(R"({"name": "a", "type": "conductor", "metal": "gold"})", "Au");
+  expect_problem(R"({"name": "a", "type": "conductor", "metal": "Au", "eta": 1.5})", "already gives");
+  expect_problem(R"({"name": "a", "type": "conductor", "metal": "Au", "metal_file": "x.yml"})",
+                 "already gives");
+  expect_problem(
+      R"({"name": "a", "type": "glossy", "reflectance": 0.5, "f0": 0.04, "metal": "Au", "roughness": 0.3})",
+      "exclude each other");
+}
+
 TEST(MaterialDesc, NamesEachMistakeOnce) {
   expect_problem(R"({"name": "a", "type": "lambert", "reflectance": 0.5, "roughnes": 1})", "roughnes");
   expect_problem(R"({"name": "a", "type": "lamber", "reflectance": 0.5})", "lambert");
