@@ -6,8 +6,13 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/math/math.h"
+#include "materials/metals.h"
+#include "tests/support/chi_square.h"
 
 namespace spectrace {
 namespace {
@@ -102,6 +107,31 @@ TEST(Fresnel, ThinFilmAgreesWithTheMatrixMethod) {
         }
       }
     }
+  }
+}
+
+TEST(Fresnel, ThinFilmIsAirysSumAtRandomPlaces) {
+  // What the project demands: 1e-4 at 200 random thicknesses, angles and wavelengths; over glass and over
+  // each metal.
+  constexpr double kDemanded = 1e-4;
+  std::vector<std::pair<std::string, RefractiveIndex>> bases{
+      {"glass", {Spectrum::constant(Float(1.52)), Spectrum::constant(0)}},
+      {"diamond", {Spectrum::constant(Float(2.42)), Spectrum::constant(0)}}};
+  for (const std::string_view name : kMetalNames) bases.emplace_back(name, named_metal(name));
+  for (const auto& [name, base] : bases) {
+    test::TestRandom random(11);
+    double largest = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Float thickness_nm = random.uniform() * 2000, lambda_nm = 360 + random.uniform() * 470;
+      const Float cosine = std::cos(random.uniform() * kPi / 2),
+                  film = Float(1.2) + random.uniform() * Float(1.4);
+      const Float eta = base.eta.at(lambda_nm), k = base.k.at(lambda_nm);
+      const double r = fresnel_thin_film(cosine, lambda_nm, film, thickness_nm, eta, k);
+      const double expected = stack_reflectance(cosine, lambda_nm, {{film, thickness_nm}}, Complex(eta, k));
+      largest = std::max(largest, std::abs(r - expected));
+    }
+    EXPECT_LT(largest, kDemanded) << name;
+    RecordProperty("largest_error_" + name, std::to_string(largest));
   }
 }
 
