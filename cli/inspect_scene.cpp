@@ -39,6 +39,17 @@ std::string text_of(const SeparatedDesc& s) {
 
 /// Of a material: what kind, and what tells it from others of the kind.
 using TypeAndDetail = std::pair<std::string, std::string>;
+TypeAndDetail type_and_detail(const MaterialDesc& material);
+
+/// "lambert, rough conductor".
+std::string text_of(const std::vector<MaterialDesc>& parts) {
+  std::string text;
+  for (const MaterialDesc& part : parts) {
+    text += (text.empty() ? "" : ", ") + type_and_detail(part).first;
+  }
+  return text;
+}
+
 TypeAndDetail type_and_detail(const MaterialDesc& material) {
   return std::visit(
       Overloaded{[](const Lambert&) -> TypeAndDetail {
@@ -69,6 +80,18 @@ TypeAndDetail type_and_detail(const MaterialDesc& material) {
                                        "diffuse_scale {}",
                                        text_of(d.ggx), d.micro.rms_nm, d.micro.correlation_nm,
                                        d.specular_scale, d.diffuse_scale)};
+                 },
+                 [](const TwoSidedDesc& t) -> TypeAndDetail {
+                   return {"two-sided", text_of(t.parts)};
+                 },
+                 [](const MixDesc& m) -> TypeAndDetail {
+                   return {"mix", text_of(m.parts)};
+                 },
+                 [](const MaskedDesc& m) -> TypeAndDetail {
+                   return {"mask", text_of(m.parts)};
+                 },
+                 [](const NormalMappedDesc& m) -> TypeAndDetail {
+                   return {"normal map", text_of(m.parts)};
                  },
                  [](const MeasuredDesc& m) -> TypeAndDetail {
                    return {"measured", m.file.string()};

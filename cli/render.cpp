@@ -72,7 +72,12 @@ bool separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& 
   const bool may_need_residual = arguments.separate == "auto" || model == SeparationModel::kResidual;
   options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
   std::size_t count = 0;
+  std::vector<MaterialDesc*> materials;
   for (MaterialDesc& material : scene.materials) {
+    for_each_desc(material, [&](MaterialDesc& part) { materials.push_back(&part); });
+  }
+  for (MaterialDesc* const each : materials) {
+    MaterialDesc& material = *each;
     if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
       const CachedSeparation separated = cached_separation(measured->file, cache, options, progress);
       if (!separated.report.usable) {

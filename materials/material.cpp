@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "materials/material.h"
 
+#include <memory>
+#include <type_traits>
+#include <utility>
+
 namespace spectrace {
 
 BsdfValue evaluate(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at) {
@@ -20,15 +24,67 @@ bool is_delta(const Material& material) {
   return std::visit([](const auto& m) { return m.is_delta(); }, material);
 }
 
+NestedMaterial nest(Material material) {
+  return NestedMaterial(std::make_shared<const MaterialNode>(MaterialNode{std::move(material)}));
+}
+
+void for_each_part(const Material& material, const std::function<void(const Material&)>& visit) {
+  visit(material);
+  std::visit(
+      [&](const auto& m) {
+        if constexpr (requires { m.parts(); }) {
+          for (const NestedMaterial* part : m.parts()) for_each_part(part->node().material, visit);
+        }
+      },
+      material);
+}
+
+namespace {
+
+template <typename Predicate>
+bool any_part(const Material& material, const Predicate& predicate) {
+  bool any = false;
+  for_each_part(material, [&](const Material& part) { any = any || predicate(part); });
+  return any;
+}
+
+template <typename Kind>
+bool is_made_with(const Material& material) {
+  return any_part(material, [](const Material& part) { return std::holds_alternative<Kind>(part); });
+}
+
+}  // namespace
+
 bool has_delta_lobe(const Material& material) {
-  const auto* plastic = std::get_if<Plastic>(&material);
-  return plastic != nullptr ? plastic->has_delta_lobe() : is_delta(material);
+  return any_part(material, [](const Material& part) {
+    const auto* plastic = std::get_if<Plastic>(&part);
+    return (plastic != nullptr && plastic->has_delta_lobe()) || std::holds_alternative<Masked>(part) ||
+           is_delta(part);
+  });
 }
 
 bool is_transmissive(const Material& material) {
-  return std::holds_alternative<Dielectric>(material) || std::holds_alternative<RoughDielectric>(material);
+  return is_made_with<Dielectric>(material) || is_made_with<RoughDielectric>(material);
 }
 
-bool keeps_sides(const Material& material) { return is_transmissive(material); }
+bool keeps_sides(const Material& material) {
+  return std::visit(
+      []<typename M>(const M& m) {
+        return requires { m.parts(); }
+        || std::is_same_v<M, Dielectric> || std::is_same_v<M, RoughDielectric>;
+      },
+      material);
+}
+
+Float pass_through(const Material& material, bool from_front, const ShadingPoint& at) {
+  return std::visit(
+      [&](const auto& m) -> Float {
+        if constexpr (requires { m.pass_through(from_front, at); }) return m.pass_through(from_front, at);
+        return 0;
+      },
+      material);
+}
+
+bool has_holes(const Material& material) { return is_made_with<Masked>(material); }
 
 }  // namespace spectrace

@@ -200,6 +200,40 @@ SeparatedDesc parse_separated(const JsonValue& json) {
   return separated;
 }
 
+MaterialDesc parse_part(const JsonValue& json);
+
+template <typename Desc>
+Desc parse_parts(const JsonValue& json) {
+  Desc desc;
+  for (const char* key : Desc::kKeys) {
+    const JsonValue part = json.require(key);
+    desc.parts.push_back(parse_part(part));
+    if (!part.is_object()) continue;
+    if (const JsonValue name = part.get("name"); name.is_string() && desc.parts.back().name.empty()) {
+      name.error("expected a name, got an empty string");
+    }
+  }
+  return desc;
+}
+
+MixDesc parse_mix(const JsonValue& json) {
+  auto mix = parse_parts<MixDesc>(json);
+  mix.weight = parse_scalar_texture(json.require("weight"));
+  return mix;
+}
+
+MaskedDesc parse_mask(const JsonValue& json) {
+  auto masked = parse_parts<MaskedDesc>(json);
+  masked.opacity = parse_scalar_texture(json.require("opacity"));
+  return masked;
+}
+
+NormalMappedDesc parse_normal_map(const JsonValue& json) {
+  auto mapped = parse_parts<NormalMappedDesc>(json);
+  mapped.normals = parse_normal_texture(json.require("normals"));
+  return mapped;
+}
+
 decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string& type) {
   if (type == "conductor") return parse_conductor(json);
   if (type == "dielectric") return parse_dielectric(json);
@@ -208,7 +242,26 @@ decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string
   if (type == "diffractive") return parse_diffractive(json);
   if (type == "measured") return MeasuredDesc{json.require("file").path()};
   if (type == "separated") return parse_separated(json);
+  if (type == "two_sided") return parse_parts<TwoSidedDesc>(json);
+  if (type == "mix") return parse_mix(json);
+  if (type == "mask") return parse_mask(json);
+  if (type == "normal_map") return parse_normal_map(json);
   return Lambert{parse_texture(json.require("reflectance"))};
+}
+
+/// A material as part of another: it needs no name.
+MaterialDesc parse_part(const JsonValue& json) {
+  MaterialDesc material;
+  if (!json.exists()) return material;  // recorded
+  material.where = json.where();
+  material.name = json.get("name").string();
+  const std::string type = json.require("type").choice(
+      "", {"lambert", "conductor", "dielectric", "glossy", "plastic", "diffractive", "measured", "separated",
+           "two_sided", "mix", "mask", "normal_map"});
+  if (type.empty()) return material;  // recorded; what the other keys should be is unknown
+  material.kind = parse_kind(json, type);
+  json.reject_unknown_keys();
+  return material;
 }
 
 AnalyticBrdf build_analytic(const std::filesystem::path& file, const SeparatedSource& source) {
@@ -241,6 +294,10 @@ Material with_directions(Values values, const std::filesystem::path& directions)
 }
 
 struct Builder {
+  template <typename Desc>
+  static NestedMaterial part(const Desc& desc, std::size_t i) {
+    return nest(build_material(desc.parts.at(i)));
+  }
   Material operator()(const MeasuredDesc& m) const {
     return with_directions(MeasuredBrdf(read_measured(m.file)), m.directions);
   }
@@ -256,6 +313,10 @@ struct Builder {
     }
     return with_directions(SeparatedBrdf(source, model), s.directions);
   }
+  Material operator()(const TwoSidedDesc& t) const { return TwoSided(part(t, 0), part(t, 1)); }
+  Material operator()(const MixDesc& m) const { return Mix(part(m, 0), part(m, 1), m.weight); }
+  Material operator()(const MaskedDesc& m) const { return Masked(part(m, 0), m.opacity); }
+  Material operator()(const NormalMappedDesc& m) const { return NormalMapped(part(m, 0), m.normals); }
   Material operator()(const PlasticDesc& p) const { return Plastic(p.reflectance, p.eta, p.alpha); }
   template <typename Analytic>
   Material operator()(const Analytic& material) const {
@@ -266,16 +327,8 @@ struct Builder {
 }  // namespace
 
 MaterialDesc parse_material(const JsonValue& json) {
-  MaterialDesc material;
-  material.where = json.where();
-  material.name = json.require("name").string();
-  const std::string type = json.require("type").choice(
-      "",
-      {"lambert", "conductor", "dielectric", "glossy", "plastic", "diffractive", "measured", "separated"});
-  if (type.empty()) return material;  // recorded; what the other keys should be is unknown
-  material.kind = parse_kind(json, type);
-  json.reject_unknown_keys();
-  return material;
+  (void)json.require("name");
+  return parse_part(json);
 }
 
 MaterialDesc load_material(const std::filesystem::path& file) {

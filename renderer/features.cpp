@@ -10,13 +10,17 @@ namespace spectrace {
 namespace {
 
 bool is_textured(const Material& material) {
-  if (const auto* lambert = std::get_if<Lambert>(&material)) {
-    return lambert->reflectance.is_textured();
-  }
-  if (const auto* glossy = std::get_if<Glossy>(&material)) return glossy->reflectance.is_textured();
-  if (const auto* plastic = std::get_if<Plastic>(&material)) return plastic->reflectance().is_textured();
-  const auto* diffractive = std::get_if<Diffractive>(&material);
-  return diffractive != nullptr && diffractive->reflectance.is_textured();
+  return std::visit(
+      []<typename M>(const M& m) {
+        if constexpr (requires { m.reflectance.is_textured(); }) {
+          return m.reflectance.is_textured();
+        } else if constexpr (requires { m.is_textured(); }) {
+          return m.is_textured();
+        } else {
+          return false;
+        }
+      },
+      material);
 }
 
 bool is_dispersive(const Material& material) {
@@ -44,9 +48,12 @@ Features required_features(const Scene& scene, bool layers) {
     const Material& material = scene.materials[shape.material];
     f.delta_lobes |= is_delta(material);
     f.transmission |= is_transmissive(material);
-    f.dispersion |= is_dispersive(material);
-    f.textures |= is_textured(material);
-    f.specular_parts |= layers && has_specular_parts(material);
+    for_each_part(material, [&](const Material& part) {
+      f.dispersion |= is_dispersive(part);
+      f.textures |= is_textured(part);
+      f.nested |= &part != &material;
+      f.specular_parts |= layers && has_specular_parts(part);
+    });
   }
   return f;
 }

@@ -23,6 +23,7 @@ struct Features {
   bool transmission = false;
   bool dispersion = false;
   bool textures = false;
+  bool nested = false;  ///< materials made of others: sides, mixes, masks, normal maps
   bool instances = false;
   bool lobe_layers = false;     ///< diffuse, specular, emission, background apart
   bool specular_parts = false;  ///< and within specular: Fresnel part, diffraction effect, residual
@@ -36,7 +37,7 @@ struct FeatureInfo {
   std::string_view name;
   std::string_view missing;
 };
-inline constexpr std::array<FeatureInfo, 12> kFeatureInfos{{
+inline constexpr std::array<FeatureInfo, 13> kFeatureInfos{{
     {&Features::indirect, "indirect light", "max_depth is at most 1"},
     {&Features::area_lights, "area lights", "no shape emits"},
     {&Features::delta_lights, "point and directional lights", "none in the scene"},
@@ -45,6 +46,7 @@ inline constexpr std::array<FeatureInfo, 12> kFeatureInfos{{
     {&Features::transmission, "transmission", "no transmitting material"},
     {&Features::dispersion, "dispersion", "no material's refraction varies with wavelength"},
     {&Features::textures, "textures", "no material varies over its surface"},
+    {&Features::nested, "mixes, masks, normal maps, two-sided materials", "no material is made of others"},
     {&Features::instances, "instances", "none in the scene"},
     {&Features::lobe_layers, "layers by lobe", "not asked for"},
     {&Features::specular_parts, "parts of the specular layer",

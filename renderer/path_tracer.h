@@ -33,7 +33,7 @@ class PathTracer {
 
   PathValue trace(const Ray& camera_ray) {
     Ray ray = camera_ray;
-    for (vertex_ = 0;; ++vertex_) {
+    for (;; ++vertex_) {
       const std::optional<Intersection> hit = scene_.accel.intersect(ray);
       if (!hit) {
         add_background(ray.direction);
@@ -41,9 +41,8 @@ class PathTracer {
       }
       const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray, *hit);
       add_emission(point, ray.direction);
-      if (int(vertex_) >= max_depth() || !scatter(point, ray)) {
-        break;
-      }
+      const bool is_end = depth_ >= max_depth();
+      if (is_end ? !pass(point, ray) : !scatter(point, ray)) break;
     }
     flush();
     return value_;
@@ -95,7 +94,7 @@ class PathTracer {
   void add(const SampledSpectrum& radiance, Layer direct) {
     add_to(Layer::kBeauty, radiance);
     if constexpr (kFeatures.lobe_layers) {
-      if (vertex_ == 0) {
+      if (depth_ == 0) {
         add_to(direct, radiance);
       } else if (!has_share_) {
         add_to(Layer::kSpecular, radiance);
@@ -174,7 +173,7 @@ class PathTracer {
   [[nodiscard]] Vertex make_vertex(SurfacePoint point, Vec3 wo) const {
     const Material& material = scene_.materials[point.material];
     bool flip = dot(wo, point.normal_g) < 0;
-    if constexpr (kFeatures.transmission) flip = flip && !keeps_sides(material);
+    if constexpr (kFeatures.transmission || kFeatures.nested) flip = flip && !keeps_sides(material);
     if (flip) {
       point.normal_g = -point.normal_g;
       point.normal_s = -point.normal_s;
@@ -204,14 +203,15 @@ class PathTracer {
     if (!light) return;
     const Vec3 wi = vertex.frame.to_local(light->wi);
     if (!sides_agree(vertex, light->wi, wi)) return;
-    const ShadingPoint at{lambda_, vertex.point.uv};
+    const ShadingPoint at = shading_point(vertex.point);
     const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, at);
     if (bsdf.value_cos.is_zero() || light->radiance.is_zero()) return;
-    if (is_shadowed(vertex, *light)) return;
+    const Float visible = visibility(vertex, *light);
+    if (!(visible > 0)) return;
     const Float pdf = light->pdf * choice->probability;
     if (!(pdf > 0)) return;  // a density Float cannot hold: BSDF sampling carries it alone
     const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
-    const SampledSpectrum radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
+    const SampledSpectrum radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf * visible);
     add_to(Layer::kBeauty, radiance);
     if constexpr (kFeatures.lobe_layers) {
       add_split(radiance,
@@ -240,10 +240,57 @@ class PathTracer {
     return std::nullopt;
   }
 
-  [[nodiscard]] bool is_shadowed(const Vertex& vertex, const LightSample& light) const {
-    const Vec3 origin = ray_origin(vertex.point, light.wi);
-    return scene_.accel.occluded(light.end ? Ray{origin, *light.end - origin, kShadowEnd}
-                                           : Ray{origin, light.wi});
+  [[nodiscard]] ShadingPoint shading_point(const SurfacePoint& point) const {
+    return {.lambda = lambda_, .uv = point.uv, .v_sign = point.v_sign};
+  }
+
+  static Ray shadow_ray(Vec3 origin, const LightSample& light) {
+    return light.end ? Ray{origin, *light.end - origin, kShadowEnd} : Ray{origin, light.wi};
+  }
+
+  /// Share of the light that arrives: 0 or 1, or what the holes in between let through.
+  [[nodiscard]] Float visibility(const Vertex& vertex, const LightSample& light) const {
+    const Ray ray = shadow_ray(ray_origin(vertex.point, light.wi), light);
+    if constexpr (kFeatures.nested) {
+      if (scene_.has_holes) return visibility_through_holes(ray, light);
+    }
+    return scene_.accel.occluded(ray) ? Float(0) : Float(1);
+  }
+
+  [[nodiscard]] Float visibility_through_holes(Ray ray, const LightSample& light) const {
+    Float visible = 1;
+    while (const std::optional<Intersection> hit = scene_.accel.intersect(ray)) {
+      const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray, *hit);
+      visible *= pass_through(scene_.materials[point.material], dot(light.wi, point.normal_g) < 0,
+                              shading_point(point));
+      if (!(visible > 0)) return 0;
+      ray = shadow_ray(ray_origin(point, light.wi), light);
+      if (!(dot(ray.direction, light.wi) > 0)) break;  // the offset has carried it past the light
+    }
+    return visible;
+  }
+
+  [[nodiscard]] std::optional<BsdfSample> sample_vertex(const Vertex& vertex) const {
+    const BsdfRandom u{sampler_.get1d(vertex_, VertexDimension::kBsdfLobe),
+                       sampler_.get2d(vertex_, VertexDimension::kBsdf)};
+    return sample(vertex.material, vertex.wo, u, shading_point(vertex.point));
+  }
+
+  bool go_straight_on(const Vertex& vertex, const BsdfSample& through, Ray& ray) {
+    beta_ *= through.weight;
+    ray = {ray_origin(vertex.point, ray.direction), ray.direction};
+    return true;
+  }
+
+  /// The last ray only fetches light, which may shine through holes. False: the path ends.
+  bool pass([[maybe_unused]] const SurfacePoint& point, [[maybe_unused]] Ray& ray) {
+    if constexpr (kFeatures.nested) {
+      if (!scene_.has_holes) return false;
+      const Vertex vertex = make_vertex(point, -ray.direction);
+      const std::optional<BsdfSample> s = sample_vertex(vertex);
+      return s && s->passes && go_straight_on(vertex, *s, ray);
+    }
+    return false;
   }
 
   /// Next-event estimation and the next ray. False: the path ends.
@@ -251,22 +298,22 @@ class PathTracer {
     const Vertex vertex = make_vertex(point, -ray.direction);
     if (const Float last = scene_.last_measured_cosine[point.material]; last > 0) {
       ++value_.measured;
-      value_.extrapolated += vertex.wo.z < last ? 1 : 0;
+      value_.extrapolated += std::abs(vertex.wo.z) < last ? 1 : 0;
     }
     bool only_delta = false;
     if constexpr (kFeatures.delta_lobes) only_delta = is_delta(vertex.material);
     if (!only_delta && scene_.integrator.next_event) sample_lights(vertex);
 
-    const ShadingPoint at{lambda_, vertex.point.uv};
-    const BsdfRandom u{sampler_.get1d(vertex_, VertexDimension::kBsdfLobe),
-                       sampler_.get2d(vertex_, VertexDimension::kBsdf)};
-    const std::optional<BsdfSample> s = sample(vertex.material, vertex.wo, u, at);
+    const std::optional<BsdfSample> s = sample_vertex(vertex);
     if (!s || s->weight.is_zero()) return false;
+    if constexpr (kFeatures.nested) {
+      if (s->passes) return go_straight_on(vertex, *s, ray);
+    }
     const Vec3 wi = vertex.frame.to_world(s->wi);
     if (!sides_agree(vertex, wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
-        share_ = lobe_shares(evaluate_lobes(vertex.material, vertex.wo, s->wi, at));
+        share_ = lobe_shares(evaluate_lobes(vertex.material, vertex.wo, s->wi, shading_point(vertex.point)));
         has_share_ = true;
       }
     }
@@ -283,6 +330,7 @@ class PathTracer {
     last_pdf_ = s->pdf;
     last_position_ = vertex.point.position;
     ray = {ray_origin(vertex.point, wi), wi};
+    ++depth_;
     return survives();
   }
 
@@ -301,8 +349,7 @@ class PathTracer {
   /// game, and so a kernel without indirect light need not know of any.
   bool survives() {
     if constexpr (kFeatures.indirect) {
-      const int next = int(vertex_) + 1;
-      if (next >= scene_.integrator.roulette_depth && next < scene_.integrator.max_depth) {
+      if (depth_ >= scene_.integrator.roulette_depth && depth_ < scene_.integrator.max_depth) {
         const Float survival = std::clamp(beta_.max() / radiance_scale_, kMinSurvival, kMaxSurvival);
         if (!(sampler_.get1d(vertex_, VertexDimension::kRoulette) < survival)) return false;
         beta_ *= 1 / survival;
@@ -314,7 +361,8 @@ class PathTracer {
   const Scene& scene_;
   const Sampler& sampler_;
   SampledWavelengths lambda_;
-  std::uint32_t vertex_ = 0;
+  std::uint32_t vertex_ = 0;  // surfaces met: what random numbers are named after
+  int depth_ = 0;             // those of them that scattered the path: holes do not count
   SampledSpectrum beta_{1};
   Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
   std::array<LaneSums, kLayerCount> sums_{};

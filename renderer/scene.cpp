@@ -43,14 +43,14 @@ void check_camera(const SceneDesc& scene) {
   }
 }
 
-std::string digest_of(const MaterialDesc& material) {
-  const std::filesystem::path* file = nullptr;
-  if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
-    file = &measured->file;
-  } else if (const auto* separated = std::get_if<SeparatedDesc>(&material.kind)) {
-    file = &separated->file;
-  }
-  return file == nullptr ? "" : fmt::format("{}: {}", material.name, sha256_hex(read_file(*file)));
+void add_digest(const MaterialDesc& material, const std::string& name, std::vector<std::string>& digests) {
+  std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.file; }) {
+          digests.push_back(fmt::format("{}: {}", name, sha256_hex(read_file(kind.file))));
+        }
+      },
+      material.kind);
 }
 
 /// Null where it is no measurement.
@@ -59,18 +59,25 @@ const MeasuredBrdf* measured_of(const Material& material) {
   return paired != nullptr ? paired->measured() : std::get_if<MeasuredBrdf>(&material);
 }
 
+/// Of a material made of several measurements the highest.
 Float last_measured_cosine(const Material& material) {
-  const MeasuredBrdf* const measured = measured_of(material);
-  return measured == nullptr ? 0 : std::max(Float(0), std::cos(Float(measured->last_measured_theta_i())));
+  Float last = 0;
+  for_each_part(material, [&](const Material& part) {
+    const MeasuredBrdf* const measured = measured_of(part);
+    if (measured != nullptr) last = std::max(last, std::cos(Float(measured->last_measured_theta_i())));
+  });
+  return last;
 }
 
 /// Hard case H10: what was measured is kept, and said.
 void note_albedo(const std::string& name, const Material& material, Progress& progress) {
-  const MeasuredBrdf* const measured = measured_of(material);
-  if (measured == nullptr) return;
-  if (const auto warning = albedo_warning(largest_albedo(*measured), measured->axis())) {
-    progress.note(fmt::format("{}: {}", name, *warning));
-  }
+  for_each_part(material, [&](const Material& part) {
+    const MeasuredBrdf* const measured = measured_of(part);
+    if (measured == nullptr) return;
+    if (const auto warning = albedo_warning(largest_albedo(*measured), measured->axis())) {
+      progress.note(fmt::format("{}: {}", name, *warning));
+    }
+  });
 }
 
 Environment build_environment(const EnvironmentDesc& light) {
@@ -114,13 +121,13 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   std::vector<Material> materials;
   std::vector<Float> measured_cosines;
   std::vector<std::string> digests;
+  bool holes = false;
   for (const MaterialDesc& material : description.materials) {
     materials.push_back(build_material(material));
     note_albedo(material.name, materials.back(), progress);
     measured_cosines.push_back(last_measured_cosine(materials.back()));
-    if (std::string digest = digest_of(material); !digest.empty()) {
-      digests.push_back(std::move(digest));
-    }
+    holes |= has_holes(materials.back());
+    for_each_desc(material, [&](const MaterialDesc& part) { add_digest(part, material.name, digests); });
   }
   ShapeBuilder shapes(description, progress);
   shapes.build();
@@ -142,6 +149,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
       .seed = description.seed,
       .materials = std::move(materials),
       .last_measured_cosine = std::move(measured_cosines),
+      .has_holes = holes,
       .geometry = std::move(shapes.geometry),
       .lights = Lights(std::move(shapes.area_lights), shapes.light_groups, std::move(shapes.emissions),
                        std::move(distant.delta), std::move(distant.environment), wavelengths, radius),

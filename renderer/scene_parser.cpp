@@ -127,19 +127,28 @@ void add_name(const JsonValue& json, const std::string& name, std::vector<std::s
   names.push_back(name);
 }
 
+/// The files that a material and its parts name must be there.
+void check_files(const JsonValue& json, const MaterialDesc& material) {
+  std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.file; }) {
+          parse_existing_file(json.get("file"));
+        } else if constexpr (requires { kind.parts; }) {
+          for (std::size_t i = 0; i < kind.parts.size(); ++i) {
+            check_files(json.get(kind.kKeys[i]), kind.parts[i]);
+          }
+        }
+      },
+      material.kind);
+}
+
 void parse_materials(const JsonValue& json, SceneDesc& scene, SceneNames& names) {
   for (const JsonValue& element : json.elements()) {
     MaterialDesc material = parse_material(element);
     if (const JsonValue name = element.require("name"); name.is_string() && material.name.empty()) {
       name.error("expected a name, got an empty string");
     }
-    std::visit(
-        [&](const auto& kind) {
-          if constexpr (requires { kind.file; }) {
-            parse_existing_file(element.get("file"));
-          }
-        },
-        material.kind);
+    check_files(element, material);
     add_name(element, material.name, names.materials);
     scene.materials.push_back(std::move(material));
   }

@@ -14,7 +14,8 @@ struct SurfacePoint {
   Vec3 normal_s;  ///< shading, unit, on normal_g's side
   Vec3 tangent;   ///< ∂p/∂u, any length, maybe zero
   Vec2 uv;
-  Float error = 0;  ///< how far along normal_g a new ray must start to leave the surface behind
+  Float v_sign = 1;  ///< 1 where v grows along normal_g x tangent, -1 where it is mirrored
+  Float error = 0;   ///< how far along normal_g a new ray must start to leave the surface behind
   std::uint32_t material = 0;
   std::uint32_t light = kNone;  ///< area light, if it emits
 };
@@ -77,6 +78,7 @@ inline LocalPoint quad_point(const Quad& quad, Float u, Float v) {
   s.normal_g = triangle_normal(quad.edge_u, quad.mirrored ? -quad.edge_v : quad.edge_v);
   s.normal_s = s.normal_g;
   s.tangent = quad.edge_u;
+  s.v_sign = quad.mirrored ? Float(-1) : Float(1);
   s.uv = {u, v};
   point.magnitude = largest_coordinate(quad);
   return point;
@@ -108,7 +110,8 @@ inline LocalPoint triangle_point(const TriangleMesh& mesh, std::uint32_t primiti
     const Float v1 = t1.y - t0.y, v2 = t2.y - t0.y;
     const Float determinant = (t1.x - t0.x) * v2 - (t2.x - t0.x) * v1;
     if (determinant != 0) {
-      s.tangent = ((p1 - p0) * v2 - (p2 - p0) * v1) * std::copysign(Float(1), determinant);
+      s.v_sign = std::copysign(Float(1), determinant);
+      s.tangent = ((p1 - p0) * v2 - (p2 - p0) * v1) * s.v_sign;
     }
     if (want_uv) s.uv = {t0.x * w + t1.x * u + t2.x * v, t0.y * w + t1.y * u + t2.y * v};
   } else {
@@ -134,6 +137,7 @@ inline void move_to_world(const Instance& instance, LocalPoint& point) {
   s.normal_g = normalize_any(m.normal(s.normal_g) * side);
   s.normal_s = normalize_any(m.normal(s.normal_s) * side);
   s.tangent = m.vector(s.tangent);
+  s.v_sign *= side;
   // Embree moves the ray's origin into the group's space: its rounding there comes back scaled up.
   const Vec3 offset_local{instance.to_local.m[0][3], instance.to_local.m[1][3], instance.to_local.m[2][3]};
   const Float origin_local = largest_row(instance.to_local) * max_abs(s.position) + max_abs(offset_local);

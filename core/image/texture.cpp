@@ -9,29 +9,13 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/image/bilinear.h"
 #include "core/spectra/rgb_uplift.h"
 
 namespace spectrace {
 namespace {
 
 constexpr NumberRange kRepeatRange{.min = 0, .max = 1e6, .min_open = true};
-
-/// The two texels around a coordinate of period 1 and the weight of the second.
-struct Tap {
-  std::size_t first = 0, second = 0;
-  double weight = 0;
-};
-Tap tap(Float coordinate, int texels) {
-  if (!std::isfinite(coordinate)) return {};
-  const double x =
-      (double(coordinate) - std::floor(double(coordinate))) * texels - 0.5;  // texel centres at .5
-  const double below = std::floor(x);
-  const auto wrapped = [texels](double i) {
-    const int k = static_cast<int>(i) % texels;
-    return static_cast<std::size_t>(k < 0 ? k + texels : k);
-  };
-  return {wrapped(below), wrapped(below + 1), x - below};
-}
 
 bool is_odd(const Checkerboard& board, Vec2 uv) {
   const Float cells = std::floor(uv.x * board.repeat_u) + std::floor(uv.y * board.repeat_v);
@@ -72,17 +56,12 @@ BitmapTexture::BitmapTexture(const Image& rgb) : width_(rgb.width), height_(rgb.
 }
 
 Rgb BitmapTexture::rgb_at(Vec2 uv) const {
-  const Tap x = tap(uv.x, width_);
-  const Tap y = tap(-uv.y, height_);  // rows run from the top, v from the bottom
-  const auto texel = [&](std::size_t row, std::size_t column, std::size_t c) {
-    return double((*rgb_)[(row * static_cast<std::size_t>(width_) + column) * 3 + c]);
-  };
+  const Bilinear texels(uv, width_, height_);
   Rgb rgb{};
   for (std::size_t c = 0; c < 3; ++c) {
-    const double above = (1 - x.weight) * texel(y.first, x.first, c) + x.weight * texel(y.first, x.second, c);
-    const double below =
-        (1 - x.weight) * texel(y.second, x.first, c) + x.weight * texel(y.second, x.second, c);
-    rgb[c] = (1 - y.weight) * above + y.weight * below;
+    rgb[c] = texels.mean([&](std::size_t row, std::size_t column) {
+      return double((*rgb_)[(row * static_cast<std::size_t>(width_) + column) * 3 + c]);
+    });
   }
   return rgb;
 }

@@ -206,6 +206,55 @@ void add_rough_glass(std::vector<BsdfCase>& cases) {
   add("DispersiveWide", flint, {Float(0.3), Float(0.3)});
 }
 
+NormalTexture tilted_normals() {
+  Image image(1, 1, {"R", "G", "B"});
+  image.data = {0.62F, 0.44F, 0.97F};
+  return NormalTexture(DataBitmap(image));
+}
+
+/// Materials made of others. `interior_eta` of the glass among them.
+void add_nested(std::vector<BsdfCase>& cases) {
+  const auto add = [&cases](std::string name, std::function<std::optional<Material>()> make,
+                            bool is_reciprocal, Float interior_eta = 1) {
+    cases.push_back({.name = std::move(name),
+                     .make = std::move(make),
+                     .is_reciprocal = is_reciprocal,
+                     .conserves_energy = true,
+                     .interior_eta = Spectrum::constant(interior_eta),
+                     .is_two_sided = true});
+  };
+  const auto grey = [] { return nest(Lambert{ramp(Float(0.1), Float(1))}); };
+  const auto brushed = [] { return nest(RoughConductor{gold_like(), {Float(0.08), Float(0.4)}}); };
+  const auto mirror = [] { return nest(SmoothConductor{gold_like()}); };
+  const auto rough_glass = [] {
+    return nest(RoughDielectric(Spectrum::constant(Float(1.5)), {Float(0.3), Float(0.3)}));
+  };
+  add(
+      "TwoSided", [=] { return TwoSided(grey(), brushed()); }, true);
+  add(
+      "TwoSidedWithGlassBehind", [=] { return TwoSided(grey(), rough_glass()); }, false, Float(1.5));
+  add(
+      "Mix", [=] { return Mix(grey(), brushed(), Float(0.3)); }, true);
+  add(
+      "MixWithMirror", [=] { return Mix(grey(), mirror(), Float(0.7)); }, true);
+  add(
+      "MixWithGlass", [=] { return Mix(grey(), rough_glass(), Float(0.5)); }, true, Float(1.5));
+  add(
+      "MixOfMixes",
+      [=] { return Mix(nest(Mix(grey(), brushed(), Float(0.5))), nest(plastic(Float(0.1))), Float(0.2)); },
+      true);
+  add(
+      "Masked", [=] { return Masked(brushed(), Float(0.6)); }, true);
+  add(
+      "MaskedMix", [=] { return Mix(nest(Masked(grey(), Float(0.25))), brushed(), Float(0.3)); }, true);
+  add(
+      "NormalMappedLambert", [=] { return NormalMapped(grey(), tilted_normals()); }, false);
+  add(
+      "NormalMappedMetal", [=] { return NormalMapped(brushed(), tilted_normals()); }, false);
+  add(
+      "NormalMappedGlass", [=] { return NormalMapped(rough_glass(), tilted_normals()); }, false, Float(1.5));
+}
+
 /// Linear in sqrt(theta_h): 1e-6 rad is a twentieth of the first cell of these coarse grids.
 constexpr double kSeparatedStep = 1e-4;
 
@@ -316,6 +365,7 @@ const std::vector<BsdfCase>& bsdf_cases() {
     add_analytic(c);
     add_rough_glass(c);
     add_plastic(c);
+    add_nested(c);
     add_separated(c);
     add_forms_of_pearlescent(c);
     add_acquired(c);

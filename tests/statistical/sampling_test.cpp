@@ -5,6 +5,9 @@
 namespace spectrace::test {
 namespace {
 
+/// What the quadrature resolves, of all mass: what the mass test forgives stays a tenth of a percent.
+constexpr double kLeastMass = 1e-3;
+
 class EveryBsdfSampling : public EveryBsdf {
  protected:
   /// From one side into the hemisphere of one: samples of the other count as lost.
@@ -40,9 +43,12 @@ TEST_P(EveryBsdfSampling, DrawsWhatItsDensitySays) {
         const std::string where = std::to_string(theta_deg) + " degrees, from " + std::to_string(side) +
                                   " to " + std::to_string(half);
         EXPECT_GT(r.p_value, level) << "shape at " << where << ": " << r.text();
-        EXPECT_GT(r.p_value_kept, level) << "mass at " << where << ": " << r.text();
-        // What the mass test forgives stays a tenth of a percent of the mass.
-        EXPECT_LT(r.integral_error, 1e-3) << where;
+        if (r.kept > kLeastMass) {
+          EXPECT_GT(r.p_value_kept, level) << "mass at " << where << ": " << r.text();
+        } else {  // a sliver that too few pilots have shown to the quadrature
+          EXPECT_NEAR(r.integral, r.kept, kLeastMass) << "mass at " << where << ": " << r.text();
+        }
+        EXPECT_LT(r.integral_error, kLeastMass) << where;
         EXPECT_EQ(r.below_horizon, 0U) << where;
         kept += r.kept;
         integral += r.integral - r.integral_error;

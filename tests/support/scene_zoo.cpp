@@ -85,6 +85,31 @@ SceneDesc instance_scene() {
   return scene;
 }
 
+MaterialDesc made_of(const std::string& name, decltype(MaterialDesc::kind) kind) {
+  return {.name = name, .where = "", .kind = std::move(kind)};
+}
+
+NormalTexture bumps() {
+  Image image(2, 2, {"R", "G", "B"});
+  image.data = {0.6F, 0.5F, 0.9F, 0.5F, 0.7F, 0.9F, 0.4F, 0.5F, 0.9F, 0.5F, 0.3F, 0.9F};
+  return NormalTexture(DataBitmap(image));
+}
+
+SceneDesc nested_scene() {
+  const MaterialDesc bumpy = made_of(
+      "", NormalMappedDesc{.parts = {glossy("", Spectrum::constant(Float(0.5)))}, .normals = bumps()});
+  const ScalarCheckerboard board{.even = Float(0.2), .odd = 1, .repeat = {8, 8}};
+  SceneDesc scene =
+      ball_scene(made_of("ball", MixDesc{.parts = {bumpy, mirror("")}, .weight = board}),
+                 made_of("floor", TwoSidedDesc{.parts = {lambert("", Float(0.5)), mirror("")}}));
+  scene.materials.push_back(
+      made_of("pane", MaskedDesc{.parts = {lambert("", Float(0.8))}, .opacity = board}));
+  scene.shapes.push_back(quad({-2, -2, 0}, {4, 0, 0}, {0, 0, 3}, "pane"));
+  scene.shapes.push_back(lamp());
+  scene.lights = {sky(Float(0.3))};
+  return scene;
+}
+
 /// A measured file of a formula, anisotropic, turned by the tangents it meets.
 MaterialDesc measured(const std::string& name) {
   const auto file = std::filesystem::temp_directory_path() / "spectrace_scene_zoo.bsdf";
@@ -150,6 +175,7 @@ std::vector<NamedScene> scene_zoo() {
             .kind = PlasticDesc{Spectrum::constant(Float(0.3)), Spectrum::constant(Float(1.5)), 0}})});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back({"mixed and bumpy ball behind a masked pane", nested_scene()});
   zoo.push_back({"instances", instance_scene()});
   zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});
   zoo.back().scene.shapes.push_back(lamp());

@@ -135,6 +135,31 @@ TEST(MaterialDesc, KnowsMetalsByName) {
       "exclude each other");
 }
 
+TEST(MaterialDesc, ReadsMaterialsMadeOfOthers) {
+  const std::string grey = R"({"type": "lambert", "reflectance": 0.5})";
+  const auto mix = parse(R"({"name": "a", "type": "mix", "weight": 0.25, "first": )" + grey +
+                         R"(, "second": {"type": "mask", "opacity": 0.5, "material": )" + grey + "}}");
+  const auto& parts = std::get<MixDesc>(mix.kind).parts;
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_TRUE(std::holds_alternative<Lambert>(parts[0].kind));
+  EXPECT_EQ(std::get<MaskedDesc>(parts[1].kind).parts.size(), 1U);
+  EXPECT_TRUE(has_holes(build_material(mix)));
+  EXPECT_FALSE(keeps_sides(build_material(parts[0])));
+  EXPECT_TRUE(keeps_sides(build_material(
+      parse(R"({"name": "a", "type": "two_sided", "front": )" + grey + R"(, "back": )" + grey + "}"))));
+  expect_problem(
+      R"({"name": "a", "type": "mix", "weight": 1.5, "first": )" + grey + R"(, "second": )" + grey + "}",
+      "[0, 1]");
+  expect_problem(R"({"name": "a", "type": "mix", "first": )" + grey + R"(, "second": )" + grey + "}",
+                 "weight");
+  expect_problem(R"({"name": "a", "type": "mask", "opacity": 1})", "\"material\"");
+  expect_problem(R"({"name": "a", "type": "mask", "opacity": 1, "material": {"type": "lambert"}})",
+                 "reflectance");
+  expect_problem(R"({"type": "mask", "opacity": 1, "material": )" + grey + "}", "name");
+  expect_problem(R"({"name": "a", "type": "normal_map", "normals": "absent.png", "material": )" + grey + "}",
+                 "there is no file");
+}
+
 TEST(MaterialDesc, NamesEachMistakeOnce) {
   expect_problem(R"({"name": "a", "type": "lambert", "reflectance": 0.5, "roughnes": 1})", "roughnes");
   expect_problem(R"({"name": "a", "type": "lamber", "reflectance": 0.5})", "lambert");

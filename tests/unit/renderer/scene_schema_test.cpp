@@ -18,6 +18,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/image/image.h"
 #include "renderer/scene_desc.h"
 
 namespace spectrace {
@@ -63,9 +64,19 @@ std::vector<Diagnostic> parser_problems(const std::string& text) {
   }
 }
 
+/// An image there is.
+std::string bitmap() {
+  static const std::string file = [] {
+    const auto path = std::filesystem::path(::testing::TempDir()) / "scene_schema.png";
+    write_png(path, Image(1, 1, {"R", "G", "B"}));
+    return path.string();
+  }();
+  return file;
+}
+
 /// One scene with every kind of section, shape, light, transform, material and spectrum.
 Json everything() {
-  return Json::parse(R"json({
+  Json scene = Json::parse(R"json({
     "$schema": "scene.schema.json",
     "spectrum": {"range_nm": [380, 780], "sampling": "uniform"},
     "camera": {"type": "thin_lens", "origin": [0, -5, 2], "target": [0, 0, 1], "up": [0, 0, 1], "fov_deg": 30,
@@ -90,6 +101,16 @@ Json everything() {
       {"name": "flakes", "type": "diffractive", "reflectance": 0.3, "eta": 1.2, "k": 6, "roughness": 0.1,
        "micro_roughness": {"rms_nm": 60, "correlation_nm": 2000, "exponent": 2.5}, "specular_scale": 0.4,
        "diffuse_scale": 0.6},
+      {"name": "foil", "type": "conductor", "metal": "Al", "roughness": 0.1},
+      {"name": "card", "type": "two_sided", "front": {"type": "lambert", "reflectance": 0.8},
+       "back": {"name": "inner", "type": "measured", "file": "furnace.json"}},
+      {"name": "worn", "type": "mix", "first": {"type": "conductor", "metal": "Cu"}, "weight": 0.25,
+       "second": {"type": "mix", "first": {"type": "lambert", "reflectance": 0.1},
+                  "second": {"type": "lambert", "reflectance": 0.9},
+                  "weight": {"checkerboard": {"even": 0.2, "odd": 1, "repeat": [4, 4]}}}},
+      {"name": "leaf", "type": "mask", "material": {"type": "lambert", "reflectance": 0.3},
+       "opacity": {"bitmap": "BITMAP"}},
+      {"name": "brick", "type": "normal_map", "material": {"type": "lambert", "reflectance": 0.3}, "normals": "BITMAP"},
       {"name": "real", "type": "measured", "file": "furnace.json"},
       {"name": "lobes", "type": "separated", "file": "furnace.json", "model": "fresnel"}],
     "groups": [{"name": "pair", "shapes": [
@@ -109,6 +130,11 @@ Json everything() {
       {"type": "point", "position": [1, 1, 1], "intensity": {"rgb": [1, 2, 3]}},
       {"type": "directional", "direction": [0, 0, -1], "irradiance": {"wavelengths_nm": [400, 500], "values": [0, 1]}}]
   })json");
+  for (Json& material : scene["materials"]) {
+    if (material["type"] == "mask") material["opacity"]["bitmap"] = bitmap();
+    if (material["type"] == "normal_map") material["normals"] = bitmap();
+  }
+  return scene;
 }
 
 /// Rules between places of a file, or about the world outside it: the parser's alone.
@@ -299,7 +325,8 @@ TEST(SceneSchema, AgreesWithTheParserOnMisspeltWords) {
       continue;
     }
     scene[place] = scene[place].get<std::string>() + "x";
-    const bool is_free_text = place.back() == "material" || place.back() == "group" || place.back() == "file";
+    const bool is_free_text = place.back() == "material" || place.back() == "group" ||
+                              place.back() == "file" || place.back() == "bitmap" || place.back() == "normals";
     EXPECT_EQ(expect_agreement(schema, scene, place.to_string()), is_free_text) << place.to_string();
     EXPECT_FALSE(parser_problems(scene.dump()).empty()) << place.to_string();
   }
