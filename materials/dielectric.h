@@ -3,6 +3,7 @@
 
 #include "core/spectra/spectrum.h"
 #include "materials/bsdf.h"
+#include "materials/fresnel.h"
 
 namespace spectrace {
 
@@ -13,10 +14,12 @@ namespace spectrace {
 /// all wavelengths.
 struct Dielectric {
   Spectrum eta = Spectrum::constant(Float(1.5));
+  std::optional<ThinFilm> film{};  ///< on the outside
 
   [[nodiscard]] BsdfValue evaluate(Vec3, Vec3, const ShadingPoint&) const { return {}; }
   [[nodiscard]] LobeValues evaluate_lobes(Vec3, Vec3, const ShadingPoint&) const { return {}; }
-  /// u.lobe chooses between reflection (with the hero's Fresnel reflectance) and refraction.
+  /// u.lobe chooses between reflection (with the hero's Fresnel reflectance, under a film the lanes' mean:
+  /// the hero's may vanish) and refraction.
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return true; }
 };

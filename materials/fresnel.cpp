@@ -93,6 +93,14 @@ Float fresnel_thin_film(Float cos_i, Float lambda_nm, Float film_eta, Float thic
          2;
 }
 
+Float fresnel_coated_dielectric(Float cos_i, bool outside, Float lambda_nm, Float base_eta, Float film_eta,
+                                Float thickness_nm) {
+  if (outside) return fresnel_thin_film(cos_i, lambda_nm, film_eta, thickness_nm, base_eta, 0);
+  const Float sin2_outside = (1 - sqr(cos_i)) * sqr(base_eta);
+  if (sin2_outside >= 1) return 1;
+  return fresnel_thin_film(safe_sqrt(1 - sin2_outside), lambda_nm, film_eta, thickness_nm, base_eta, 0);
+}
+
 SampledSpectrum ConductorFresnel::reflectance(Float cos_i, const SampledWavelengths& lambda) const {
   const SampledSpectrum n = eta.sample(lambda), kappa = k.sample(lambda);
   SampledSpectrum result;

@@ -29,6 +29,12 @@ namespace spectrace {
 [[nodiscard]] Float fresnel_thin_film(Float cos_i, Float lambda_nm, Float film_eta, Float thickness_nm,
                                       Float base_eta, Float base_k);
 
+/// The same film between vacuum and a clear base, seen from either side; `cos_i` on that side. A stack
+/// without losses sends back the same share of the light in either direction of a refracted ray: Born & Wolf
+/// 1999, sec. 1.6.3, and all of it beyond the critical angle.
+[[nodiscard]] Float fresnel_coated_dielectric(Float cos_i, bool outside, Float lambda_nm, Float base_eta,
+                                              Float film_eta, Float thickness_nm);
+
 /// A layer that shows interference colours.
 struct ThinFilm {
   Spectrum eta;            ///< >= 1, real

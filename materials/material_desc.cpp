@@ -99,7 +99,8 @@ decltype(MaterialDesc::kind) parse_dielectric(const JsonValue& json) {
   const JsonValue json_eta = json.require("eta");
   Spectrum eta = parse_optical_constant(json_eta, kPositive);
   const JsonValue roughness = json.get("roughness");
-  if (is_smooth(roughness)) return Dielectric{std::move(eta)};
+  std::optional<ThinFilm> film = parse_thin_film(json.get("thin_film"));
+  if (is_smooth(roughness)) return Dielectric{std::move(eta), std::move(film)};
   // Asked of visible light alone: Sellmeier's equation has poles in the ultraviolet.
   const bool bends = min_over(eta, {}) >= 1 + kMinRoughContrast || eta.max_over({}) <= 1 - kMinRoughContrast;
   if (json_eta.exists() && !bends) {
@@ -107,7 +108,7 @@ decltype(MaterialDesc::kind) parse_dielectric(const JsonValue& json) {
         "must stay {} away from 1, on one side, at every visible wavelength where the surface is rough",
         kMinRoughContrast));
   }
-  return RoughDielectric(std::move(eta), parse_roughness(roughness));
+  return RoughDielectric(std::move(eta), parse_roughness(roughness), std::move(film));
 }
 
 decltype(MaterialDesc::kind) parse_conductor(const JsonValue& json) {

@@ -2,14 +2,27 @@
 #include "materials/rough_dielectric.h"
 
 #include "core/math/math.h"
-#include "materials/fresnel.h"
 
 namespace spectrace {
 
 RoughDielectric::Lanes RoughDielectric::lanes(bool outside, const SampledWavelengths& lambda) const {
-  Lanes lanes{.eta = eta_.sample(lambda), .count = varies_ && !lambda.secondary_terminated() ? kLanes : 1};
+  Lanes lanes;
+  lanes.eta = eta_.sample(lambda);
+  lanes.count = varies_ && !lambda.secondary_terminated() ? kLanes : 1;
+  lanes.outside = outside;
   for (int i = 0; !outside && i < kLanes; ++i) lanes.eta[i] = 1 / lanes.eta[i];
+  if (film_) {
+    lanes.film_eta = film_->eta.sample(lambda);
+    for (int i = 0; i < kLanes; ++i) lanes.lambda_nm[i] = lambda.lambda_nm(i);
+  }
   return lanes;
+}
+
+Float RoughDielectric::reflectance(const Lanes& lanes, int lane, Float cos_half) const {
+  const Float eta = lanes.eta[lane];
+  if (!film_) return fresnel_dielectric(cos_half, eta);
+  return fresnel_coated_dielectric(cos_half, lanes.outside, lanes.lambda_nm[lane],
+                                   lanes.outside ? eta : 1 / eta, lanes.film_eta[lane], film_->thickness_nm);
 }
 
 BsdfValue RoughDielectric::evaluate(const Lanes& lanes, Vec3 wo, Vec3 wi) const {
@@ -21,12 +34,12 @@ BsdfValue RoughDielectric::evaluate(const Lanes& lanes, Vec3 wo, Vec3 wi) const 
   if (wi.z > 0) {
     const Ggx::Reflection r = ggx_.reflect(wo, wi);
     for (int i = 0; i < lanes.count; ++i) {
-      add(i, fresnel_dielectric(r.cos_half, lanes.eta[i]), r.value_cos, r.pdf);
+      add(i, reflectance(lanes, i, r.cos_half), r.value_cos, r.pdf);
     }
   } else {
     for (int i = 0; i < lanes.count; ++i) {
       const Ggx::Refraction r = ggx_.refract(wo, wi, lanes.eta[i]);
-      add(i, 1 - fresnel_dielectric(r.cos_half, lanes.eta[i]), r.value_cos, r.pdf);
+      add(i, 1 - reflectance(lanes, i, r.cos_half), r.value_cos, r.pdf);
     }
   }
   if (!(result.pdf > 0)) return {};
@@ -62,7 +75,7 @@ std::optional<BsdfSample> RoughDielectric::sample(Vec3 wo, const BsdfRandom& u,
   const Vec3 wm = normal / std::sqrt(length2);
   const Float cos_o = std::min(dot(above, wm), Float(1));
   if (!(cos_o > 0)) return std::nullopt;
-  const Float reflected = fresnel_dielectric(cos_o, eta);
+  const Float reflected = reflectance(l, lane, cos_o);
   const bool reflects = reflected >= 1 || scaled - Float(lane) < reflected;
   Vec3 wi = wm * (2 * cos_o) - above;
   if (!reflects) {  // Snell's law; not beyond the critical angle, where all would have been reflected

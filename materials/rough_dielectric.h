@@ -3,6 +3,7 @@
 
 #include "core/spectra/spectrum.h"
 #include "materials/bsdf.h"
+#include "materials/fresnel.h"
 #include "materials/microfacet.h"
 
 namespace spectrace {
@@ -22,8 +23,10 @@ inline constexpr Float kMinRoughContrast = Float(0.01);
 class RoughDielectric {
  public:
   RoughDielectric() : RoughDielectric(Spectrum::constant(Float(1.5)), {}) {}
-  /// `eta` of the interior > 0, kMinRoughContrast from 1 at every wavelength.
-  RoughDielectric(Spectrum eta, Ggx ggx) : eta_(std::move(eta)), ggx_(ggx), varies_(!eta_.is_constant()) {}
+  /// `eta` of the interior > 0, kMinRoughContrast from 1 at every wavelength; `film` on the outside of every
+  /// facet.
+  RoughDielectric(Spectrum eta, Ggx ggx, std::optional<ThinFilm> film = std::nullopt)
+      : eta_(std::move(eta)), ggx_(ggx), film_(std::move(film)), varies_(film_ || !eta_.is_constant()) {}
 
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
@@ -38,14 +41,18 @@ class RoughDielectric {
   /// for all where they do not differ.
   struct Lanes {
     SampledSpectrum eta;
+    SampledSpectrum film_eta, lambda_nm;  // where there is a film
     int count = 1;
+    bool outside = true;
   };
   [[nodiscard]] Lanes lanes(bool outside, const SampledWavelengths& lambda) const;
+  [[nodiscard]] Float reflectance(const Lanes& lanes, int lane, Float cos_half) const;
   /// wo.z > 0.
   [[nodiscard]] BsdfValue evaluate(const Lanes& lanes, Vec3 wo, Vec3 wi) const;
 
   Spectrum eta_;
   Ggx ggx_;
+  std::optional<ThinFilm> film_;
   bool varies_;
 };
 

@@ -184,9 +184,9 @@ void add_plastic(std::vector<BsdfCase>& cases) {
 }
 
 void add_rough_glass(std::vector<BsdfCase>& cases) {
-  const auto add = [&cases](std::string name, Spectrum eta, Ggx ggx) {
+  const auto add = [&cases](std::string name, Spectrum eta, Ggx ggx, std::optional<ThinFilm> film = {}) {
     cases.push_back({.name = "RoughGlass" + std::move(name),
-                     .make = [eta, ggx] { return RoughDielectric(eta, ggx); },
+                     .make = [eta, ggx, film] { return RoughDielectric(eta, ggx, film); },
                      .is_reciprocal = true,
                      .conserves_energy = true,
                      .specular_step = 1e-5,
@@ -204,6 +204,8 @@ void add_rough_glass(std::vector<BsdfCase>& cases) {
   add("Bubble", Spectrum::constant(Float(0.75)), {Float(0.2), Float(0.2)});
   add("DispersiveNarrow", flint, {Float(0.02), Float(0.02)});
   add("DispersiveWide", flint, {Float(0.3), Float(0.3)});
+  add("ThinFilm", glass, {Float(0.2), Float(0.2)},
+      ThinFilm{.eta = Spectrum::constant(Float(2.2)), .thickness_nm = 300});
 }
 
 NormalTexture tilted_normals() {

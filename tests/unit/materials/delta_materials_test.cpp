@@ -91,6 +91,43 @@ TEST(Dielectric, ProbabilitiesSumToOneAndEnergyIsKept) {
   }
 }
 
+TEST(Dielectric, UnderAFilmEveryLaneKeepsItsEnergy) {
+  const Dielectric glass{Spectrum::constant(Float(1.5)),
+                         ThinFilm{.eta = Spectrum::constant(Float(2.2)), .thickness_nm = 300}};
+  for (const bool above : {true, false}) {
+    for (const double angle : kAngles) {
+      const Vec3 wo = at_angle(angle, above);
+      const auto reflected = glass.sample(wo, {.lobe = 0, .direction = {}}, kAt);
+      const auto refracted = glass.sample(wo, {.lobe = kOneMinusEpsilon, .direction = {}}, kAt);
+      ASSERT_TRUE(reflected && refracted);
+      if (refracted->wi.z * wo.z > 0) continue;  // total reflection
+      EXPECT_FALSE(refracted->is_dispersive);
+      EXPECT_NEAR(reflected->pdf + refracted->pdf, 1, kRounding);
+      for (int i = 0; i < kLanes; ++i) {
+        const double scale = above ? 1.5 * 1.5 : 1 / (1.5 * 1.5);
+        EXPECT_NEAR(reflected->weight[i] * reflected->pdf + refracted->weight[i] * scale * refracted->pdf, 1,
+                    2 * kRounding);
+        if (above) {
+          EXPECT_NEAR(reflected->weight[i] * reflected->pdf,
+                      fresnel_thin_film(wo.z, kLambda.lambda_nm(i), Float(2.2), 300, Float(1.5), 0),
+                      kRounding);
+        }
+      }
+    }
+  }
+}
+
+TEST(Dielectric, AQuarterWaveOfTheMeanIndexLetsAllThrough) {
+  const Float film = std::sqrt(Float(1.5));
+  const Dielectric glass{Spectrum::constant(Float(1.5)),
+                         ThinFilm{.eta = Spectrum::constant(film), .thickness_nm = 500 / (4 * film)}};
+  SampledWavelengths hero({500, 500, 500, 500}, {1, 1, 1, 1});
+  const auto s = glass.sample(at_angle(0), {.lobe = Float(1e-5), .direction = {}}, {.lambda = hero});
+  ASSERT_TRUE(s);
+  EXPECT_LT(s->wi.z, 0);
+  EXPECT_NEAR(s->weight[0], 1 / (1.5 * 1.5), kRounding);
+}
+
 TEST(Dielectric, GoingInAndOutRestoresRadiance) {
   const Dielectric glass = flint();
   const auto in = glass.sample(at_angle(50), {.lobe = kOneMinusEpsilon, .direction = {}}, kAt);
@@ -132,7 +169,7 @@ TEST(Material, DispatchKnowsDeltasAndTransmission) {
   EXPECT_TRUE(is_delta(Material(SmoothConductor{})));
   EXPECT_FALSE(is_transmissive(Material(SmoothConductor{})));
   EXPECT_FALSE(is_delta(Material(RoughConductor{})));
-  EXPECT_FALSE(is_delta(Material(Lambert{})));
+  EXPECT_FALSE(is_delta(Material(std::in_place_type<Lambert>)));
 }
 
 }  // namespace

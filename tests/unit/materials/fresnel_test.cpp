@@ -135,6 +135,29 @@ TEST(Fresnel, ThinFilmIsAirysSumAtRandomPlaces) {
   }
 }
 
+TEST(Fresnel, AFilmOnGlassReflectsTheSameFromBothSides) {
+  // From within by the matrix method again, now with the layers in the other order: its light comes from the
+  // glass, so that all indices are taken relative to it.
+  for (const double eta : {1.5, 2.42, 0.75}) {
+    for (const double film : {1.2, 1.38, 2.2}) {
+      for (const double c : kCosines) {
+        for (const double d : {0.0, 110.0, 700.0}) {
+          const bool is_total = (1 - c * c) * eta * eta >= 1;
+          const Float r = fresnel_coated_dielectric(Float(c), false, 550, Float(eta), Float(film), Float(d));
+          if (is_total) {
+            EXPECT_EQ(r, 1);
+            continue;
+          }
+          // A wave of 550 nm in air has 550 / eta in the glass. Near the critical angle the rounding of the
+          // angle counts many times: the widest such gap of these angles is 50 times.
+          EXPECT_NEAR(r, stack_reflectance(c, 550 / eta, {{film / eta, d}}, 1 / eta), 50 * kRounding)
+              << eta << " " << film << " " << c << " " << d;
+        }
+      }
+    }
+  }
+}
+
 TEST(Fresnel, FilmOfNoThicknessIsTheBareMetal) {
   for (const double c : kCosines) {
     EXPECT_NEAR(fresnel_thin_film(Float(c), 550, Float(1.8), 0, Float(0.15), Float(3.5)),

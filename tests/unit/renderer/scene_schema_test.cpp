@@ -94,7 +94,7 @@ Json everything() {
        "eta": {"wavelengths_nm": [400, 700], "values": [1.5, 0.2]}},
       {"name": "glass", "type": "dielectric", "eta": {"sellmeier": {"b": [1.7, 0.3, 1.9], "c_um2": [0.01, 0.06, 155]}}},
       {"name": "ground", "type": "dielectric", "eta": {"cauchy": {"a": 1.5, "b_um2": 0.004, "c_um4": 1e-5}},
-       "roughness": 0.2},
+       "roughness": 0.2, "thin_film": {"eta": 1.38, "thickness_nm": 100}},
       {"name": "coat", "type": "glossy", "reflectance": 0.3, "f0": 0.04, "roughness": 0.1, "specular_scale": 0.4,
        "diffuse_scale": 0.6},
       {"name": "mug", "type": "plastic", "reflectance": {"rgb": [0.7, 0.1, 0.1]}, "eta": 1.5, "roughness": 0.05},
