@@ -115,11 +115,36 @@ struct LimitResult {
   bool holds = false;
 };
 
+/// Pictures of this program that do not share their random numbers differ by noise too: says so, else empty.
+std::string noise_note(const std::string& reference, const std::string& test) {
+  const Metadata of_reference = read_metadata(reference), of_test = read_metadata(test);
+  if (!of_reference.contains("spectrace:seed") || !of_test.contains("spectrace:seed")) return {};
+  for (const char* key : {"spectrace:seed", "spectrace:spp"}) {
+    const auto in_reference = of_reference.find(key), in_test = of_test.find(key);
+    if (in_test == of_test.end() || in_reference == of_reference.end()) return {};
+    if (in_reference->second != in_test->second) {
+      return fmt::format("{} differs between the pictures: their noise is part of these figures", key);
+    }
+  }
+  const auto is_paired = [](const Metadata& metadata) {
+    const auto paired = metadata.find("spectrace:paired");
+    return paired != metadata.end() && paired->second == decltype(paired->second)(std::int64_t(1));
+  };
+  if (is_paired(of_reference) && is_paired(of_test)) return {};
+  const auto scene = [](const Metadata& metadata) {
+    const auto separation = metadata.find("spectrace:separation");
+    return separation == metadata.end() ? Metadata::mapped_type(std::string()) : separation->second;
+  };
+  if (scene(of_reference) == scene(of_test)) return {};
+  return "of different models and not both rendered with --paired: their noise is part of these figures";
+}
+
 struct Comparison {
   std::string test;
   int width = 0, height = 0;
   std::vector<std::string> non_finite;  ///< one line a channel that has such values, of all channels
   std::vector<std::string> not_compared;
+  std::string note;  ///< on what the figures hold besides the difference in question
   std::vector<LayerResult> layers;
   std::vector<LimitResult> limits;
 
@@ -197,6 +222,7 @@ Comparison compare(const Arguments& arguments, const Image& reference, const std
   result.test = test_file;
   result.width = reference.width;
   result.height = reference.height;
+  result.note = noise_note(arguments.reference, test_file);
   find_non_finite(reference, arguments.reference, result.non_finite);
   find_non_finite(test, test_file, result.non_finite);
   for (const std::string& layer : common_layers(arguments, reference, test, result)) {
@@ -256,6 +282,7 @@ void print_comparisons(const std::vector<Comparison>& results, const Arguments& 
       kSsimWindow, kSsimWindow, o.epsilon, o.mape_floor);
   for (const Comparison& result : results) {
     const std::string prefix = results.size() == 1 ? "" : result.test + ": ";
+    if (!result.note.empty()) fmt::print("{}note: {}\n", prefix, result.note);
     if (!result.not_compared.empty()) {
       fmt::print("{}not compared: {}\n", prefix, fmt::join(result.not_compared, ", "));
     }
@@ -274,6 +301,7 @@ void write_json(JsonWriter& json, const Comparison& result, const Arguments& arg
   json.member("width", result.width);
   json.member("height", result.height);
   json.member("passes", result.passes());
+  json.member("note", result.note);
   json.key("non_finite");
   json.begin_array();
   for (const std::string& line : result.non_finite) json.value(line);

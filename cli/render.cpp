@@ -55,8 +55,9 @@ fs::path default_cache() {
 }
 
 fs::path output_file(const Arguments& arguments) {
-  const fs::path file =
-      arguments.output.empty() ? fs::path(arguments.scene).stem().concat(".exr") : fs::path(arguments.output);
+  const std::string model = arguments.separate.empty() ? "" : "-" + arguments.separate;
+  const fs::path file = arguments.output.empty() ? fs::path(arguments.scene).stem().concat(model + ".exr")
+                                                 : fs::path(arguments.output);
   require_folder_of(file);
   return file;
 }
@@ -84,9 +85,10 @@ bool separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& 
         progress.note(fmt::format("{}: {}", measured->file.string(), separated.report.verdict));
         return false;
       }
-      progress.note(fmt::format("{}: {} {}", material.name,
+      progress.note(fmt::format("{}: {} {}{}", material.name,
                                 separated.was_cached ? "separated before," : "separated into",
-                                separated.file.string()));
+                                separated.file.string(),
+                                arguments.separate.empty() ? ", which draws its directions (--paired)" : ""));
       const fs::path directions = arguments.paired ? separated.file : fs::path();
       ++count;
       if (arguments.separate.empty()) {
@@ -120,9 +122,7 @@ void print_summary(const fs::path& file, const RenderOptions& options, const Ren
                100 * report.extrapolated_share);
   }
   fmt::print("kernel: {}\neffects: {}\n", report.kernel, fmt::join(report.effects_used, ", "));
-  for (const std::string& skipped : report.effects_skipped) {
-    fmt::print("skipped: {}\n", skipped);
-  }
+  fmt::print("not simulated: {}\n", fmt::join(report.effects_skipped, "; "));
 }
 
 void write_images(const fs::path& file, const Image& image, const Metadata& metadata,
@@ -172,8 +172,8 @@ void add_render(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<Arguments>();
   app.add_option("scene", arguments->scene, "scene to render (.json)");
   app.add_option("-o,--output", arguments->output,
-                 "image to write (.exr), a .png beside it; default: the scene's "
-                 "name, in the current folder");
+                 "image to write (.exr), a .png beside it; default: the scene's name, and the model's of "
+                 "--separate, in the current folder");
   app.add_option("--spp", arguments->spp, "samples a pixel; default: the scene's")
       ->check(CLI::Range(1, 1 << 30));
   app.add_option("--seed", arguments->seed, "of the random numbers; default: the scene's");

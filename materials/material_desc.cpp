@@ -30,7 +30,7 @@ Float min_over(const Spectrum& s, WavelengthRange range) { return -s.scaled(-1).
 Spectrum parse_optical_constant(const JsonValue& json, NumberRange range) {
   Spectrum s = parse_spectrum(json, SpectrumRole::kUnbounded, Spectrum::constant(1));
   const Float minimum = min_over(s, kOptical);
-  if (!range.contains(minimum)) json.error("must lie in " + range.text() + " at every wavelength");
+  if (!range.contains(minimum)) json.error("must be " + range.text() + " at every wavelength");
   return s;
 }
 
@@ -185,7 +185,7 @@ PlasticDesc parse_plastic(const JsonValue& json) {
   Spectrum eta = parse_optical_constant(json_eta, kPositive);
   if (constexpr NumberRange kCoat{.min = 1, .max = kMaxCoatEta};
       !kCoat.contains(min_over(eta, {})) || !kCoat.contains(eta.max_over({}))) {
-    json_eta.error("must lie in " + kCoat.text() + " at every visible wavelength");
+    json_eta.error("must be " + kCoat.text() + " at every visible wavelength");
   }
   const JsonValue roughness = json.get("roughness");
   const double alpha = is_smooth(roughness) ? 0 : roughness.number(0, kAlphaRange);

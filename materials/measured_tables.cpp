@@ -70,6 +70,19 @@ std::vector<float> non_negative_values(const Field& field) {
   return values;
 }
 
+/// Of the micro-surface, over that of the surface.
+std::vector<float> projected_areas(const Field& field) {
+  // The database's files have 1 at most, exactly; twice that is left to files that are normalised otherwise.
+  constexpr float kLargest = 2;
+  std::vector<float> values = non_negative_values(field);
+  const auto bad = std::find_if(values.begin(), values.end(), [](float x) { return x > kLargest; });
+  if (bad != values.end()) {
+    field.fail(fmt::format("value {} at {}, expected projected areas of at most {}", *bad,
+                           field.place(bad - values.begin()), kLargest));
+  }
+  return values;
+}
+
 /// Strictly increasing, at least one entry.
 std::vector<float> increasing_values(const Field& field) {
   std::vector<float> values = finite_values(field);
@@ -160,7 +173,7 @@ void read_angular_tables(const TensorFile& file, MeasuredTables& out) {
   out.ndf_height = static_cast<int>(height);
   out.ndf_width = static_cast<int>(width);
   out.ndf = non_negative_values(ndf);
-  out.sigma = non_negative_values(require(file, "sigma", kFloatTypes, {height, width}));
+  out.sigma = projected_areas(require(file, "sigma", kFloatTypes, {height, width}));
 
   const Field vndf = require(file, "vndf", kFloatTypes, {out.phi_i.size(), out.theta_i.size(), 0, 0});
   out.warp_size = square_size(vndf);
@@ -271,6 +284,9 @@ float MeasuredTables::last_measured_theta_i() const {
 }
 
 MeasuredTables measured_from_tensors(const TensorFile& tensors) {
+  if (tensors.find("c_d") != nullptr) {
+    throw InputError(tensors.file_name(), "", "a separated material (.sep), not a measurement");
+  }
   refuse_misspelt_fields(tensors);
   MeasuredTables out;
   out.file_name = tensors.file_name();

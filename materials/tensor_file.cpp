@@ -26,6 +26,7 @@ constexpr std::string_view kMagic{"tensor_file\0", 12};  // the terminating zero
 constexpr std::uint8_t kMajorVersion = 1, kMinorVersion = 0;
 constexpr std::size_t kAlignment = 8;       // of field data: what the database's own files keep
 constexpr std::uint32_t kMaxFields = 4096;  // real files: 13; keeps the search for duplicates short
+constexpr std::size_t kShownName = 40;      // of a damaged name: enough to find it
 constexpr int kMaxDimensions = 32;          // numpy's limit; keeps messages to a line
 constexpr std::size_t kHeadSize = kMagic.size() + 2 + sizeof(std::uint32_t);
 
@@ -122,8 +123,10 @@ Tensor read_entry(HeaderCursor& in, std::span<const std::byte> bytes) {
   const auto name_size = in.number<std::uint16_t>("a field's name length");
   const std::string_view name = in.text(name_size, "a field's name");
   if (!is_plain_name(name)) {
-    in.fail(begin,
-            fmt::format("field name \"{}\": expected printable ASCII without spaces", printable(name)));
+    in.fail(begin, fmt::format("field name \"{}\"{}: expected printable ASCII without spaces",
+                               printable(name.substr(0, kShownName)),
+                               name.size() > kShownName ? fmt::format("... of {} bytes", name.size())
+                                                        : std::string()));
   }
   in.enter_field(std::string(name));
 

@@ -13,7 +13,7 @@ namespace spectrace {
 namespace {
 
 /// Mean over wavelengths as paths draw them.
-double mean_over(const WavelengthDistribution& wavelengths, const std::function<Float(Float)>& at) {
+double mean_over(const WavelengthDistribution& wavelengths, const std::function<double(Float)>& at) {
   constexpr int kSteps = 64;  // by quantiles: ample for a choice that need not be exact
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
@@ -23,7 +23,7 @@ double mean_over(const WavelengthDistribution& wavelengths, const std::function<
 }
 
 double mean_of(const WavelengthDistribution& wavelengths, const Spectrum& spectrum) {
-  return mean_over(wavelengths, [&](Float nm) { return spectrum.at(nm); });
+  return mean_over(wavelengths, [&](Float nm) { return double(spectrum.at(nm)); });
 }
 
 /// One thing that lights: some consecutive lights and their powers.
@@ -58,33 +58,33 @@ std::vector<double> choice_probabilities(const std::vector<Emitter>& emitters) {
 
 Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& groups,
                std::vector<Spectrum> emissions, std::vector<DeltaLight> delta,
-               std::optional<Environment> environment, const WavelengthDistribution& wavelengths,
+               std::optional<Environment> environment, const WavelengthDistribution& observer,
                Float scene_radius)
     : area_(std::move(area)),
       emissions_(std::move(emissions)),
       delta_(std::move(delta)),
-      environment_(std::move(environment)) {
+      environment_(std::move(environment)),
+      emission_area_(emissions_.size()),
+      // 1e-30: an empty scene has no disk.
+      scene_disk_(std::max(kPi64 * sqr(double(scene_radius)), 1e-30)) {
   std::vector<Emitter> emitters;
   std::size_t next = 0;
   for (std::uint32_t size : groups) {
     Emitter emitter;
-    const double radiance = size > 0 ? mean_of(wavelengths, emissions_[area_[next].emission]) : 0;
+    const double radiance = size > 0 ? mean_of(observer, emissions_[area_[next].emission]) : 0;
     for (std::uint32_t i = 0; i < size; ++i, ++next) {
-      emitter.powers.push_back(kPi64 * light_area(area_[next].shape) * radiance);
+      const double light = light_area(area_[next].shape);
+      emitter.powers.push_back(kPi64 * light * radiance);
+      emission_area_[area_[next].emission] += light;
     }
     emitters.push_back(std::move(emitter));
   }
   SPECTRACE_CHECK(next == area_.size());
-  const double disk = kPi64 * sqr(double(scene_radius));  // what the scene shows a distant light
   for (const DeltaLight& light : delta_) {
-    const auto* point = std::get_if<PointLight>(&light);
-    emitters.push_back(
-        {{point != nullptr ? 4 * kPi64 * mean_of(wavelengths, point->intensity)
-                           : disk * mean_of(wavelengths, std::get<DirectionalLight>(light).irradiance)}});
+    emitters.push_back({{mean_over(observer, [&](Float nm) { return power_of(light, double(nm)); })}});
   }
   if (environment_) {
-    const double mean = mean_over(wavelengths, [&](Float nm) { return environment_->mean_radiance(nm); });
-    emitters.push_back({{4 * kPi64 * std::max(disk, 1e-30) * mean}});  // 1e-30: an empty scene has no disk
+    emitters.push_back({{mean_over(observer, [&](Float nm) { return power_of_environment(double(nm)); })}});
   }
   double sum = 0;
   for (double p : choice_probabilities(emitters)) {
@@ -94,6 +94,26 @@ Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& gr
   if (!(sum > 0)) {
     cumulative_.clear();
   }
+}
+
+double Lights::power_of(const DeltaLight& light, double lambda_nm) const {
+  if (const auto* point = std::get_if<PointLight>(&light)) {
+    return 4 * kPi64 * double(point->intensity.at(Float(lambda_nm)));
+  }
+  return scene_disk_ * double(std::get<DirectionalLight>(light).irradiance.at(Float(lambda_nm)));
+}
+
+double Lights::power_of_environment(double lambda_nm) const {
+  return 4 * kPi64 * scene_disk_ * double(environment_->mean_radiance(Float(lambda_nm)));
+}
+
+double Lights::power(double lambda_nm) const {
+  double sum = environment_ ? power_of_environment(lambda_nm) : 0;
+  for (const DeltaLight& light : delta_) sum += power_of(light, lambda_nm);
+  for (std::size_t i = 0; i < emissions_.size(); ++i) {
+    sum += kPi64 * emission_area_[i] * double(emissions_[i].at(Float(lambda_nm)));
+  }
+  return sum;
 }
 
 std::optional<Lights::Choice> Lights::choose(Float u) const {

@@ -40,11 +40,10 @@ class Lights {
 
   Lights() = default;
   /// `groups`: how many consecutive area lights make one emitter (a mesh). Powers are averaged over
-  /// `wavelengths`; `scene_radius` [m] gives distant lights a power.
+  /// `observer`, what a pixel sees of each wavelength; `scene_radius` [m] gives distant lights a power.
   Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& groups,
          std::vector<Spectrum> emissions, std::vector<DeltaLight> delta,
-         std::optional<Environment> environment, const WavelengthDistribution& wavelengths,
-         Float scene_radius);
+         std::optional<Environment> environment, const WavelengthDistribution& observer, Float scene_radius);
 
   struct Choice {
     std::uint32_t light = 0;
@@ -54,6 +53,9 @@ class Lights {
   /// [0, 1). nullopt where there is no light.
   [[nodiscard]] std::optional<Choice> choose(Float u) const;
   [[nodiscard]] Float probability(std::uint32_t light) const { return probability_[light]; }
+
+  /// Of all lights [W/nm], distant ones by what of them the scene catches.
+  [[nodiscard]] double power(double lambda_nm) const;
 
   [[nodiscard]] bool is_area(std::uint32_t light) const { return light < area_.size(); }
   [[nodiscard]] bool is_environment(std::uint32_t light) const {
@@ -78,12 +80,17 @@ class Lights {
   [[nodiscard]] std::size_t delta_count() const { return delta_.size(); }
 
  private:
+  [[nodiscard]] double power_of(const DeltaLight& light, double lambda_nm) const;
+  [[nodiscard]] double power_of_environment(double lambda_nm) const;
+
   std::vector<AreaLight> area_;
   std::vector<Spectrum> emissions_;
   std::vector<DeltaLight> delta_;
   std::optional<Environment> environment_;
-  std::vector<Float> probability_;  // by light
-  std::vector<double> cumulative_;  // by light; last 1
+  std::vector<double> emission_area_;  // by emission
+  double scene_disk_ = 0;              // what the scene shows a distant light
+  std::vector<Float> probability_;     // by light
+  std::vector<double> cumulative_;     // by light; last 1
 };
 
 }  // namespace spectrace

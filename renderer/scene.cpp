@@ -131,29 +131,32 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   }
   ShapeBuilder shapes(description, progress);
   shapes.build();
-  const WavelengthDistribution wavelengths = description.visible_sampling
-                                                 ? WavelengthDistribution::visible(description.range)
-                                                 : WavelengthDistribution::uniform(description.range);
   DistantLights distant = build_lights(description);
   Accel accel(shapes.geometry);
-  const Float radius = bounds(shapes.geometry).radius();
-  return Scene{
-      .file_name = description.file_name,
-      .sha256 = description.sha256,
-      .material_sha256s = std::move(digests),
-      .wavelengths = wavelengths,
-      .camera = Camera(description.camera, description.film),
-      .film = description.film,
-      .integrator = description.integrator,
-      .spp = description.spp,
-      .seed = description.seed,
-      .materials = std::move(materials),
-      .last_measured_cosine = std::move(measured_cosines),
-      .has_holes = holes,
-      .geometry = std::move(shapes.geometry),
-      .lights = Lights(std::move(shapes.area_lights), shapes.light_groups, std::move(shapes.emissions),
-                       std::move(distant.delta), std::move(distant.environment), wavelengths, radius),
-      .accel = std::move(accel)};
+  const auto uniform = WavelengthDistribution::uniform(description.range);
+  const auto observer =
+      description.visible_sampling ? WavelengthDistribution::visible(description.range) : uniform;
+  Lights lights(std::move(shapes.area_lights), shapes.light_groups, std::move(shapes.emissions),
+                std::move(distant.delta), std::move(distant.environment), observer,
+                bounds(shapes.geometry).radius());
+  const auto power = [&](double lambda_nm) { return lights.power(lambda_nm); };
+  return Scene{.file_name = description.file_name,
+               .sha256 = description.sha256,
+               .material_sha256s = std::move(digests),
+               .wavelengths = description.visible_sampling
+                                  ? WavelengthDistribution::visible(description.range, power)
+                                  : uniform,
+               .camera = Camera(description.camera, description.film),
+               .film = description.film,
+               .integrator = description.integrator,
+               .spp = description.spp,
+               .seed = description.seed,
+               .materials = std::move(materials),
+               .last_measured_cosine = std::move(measured_cosines),
+               .has_holes = holes,
+               .geometry = std::move(shapes.geometry),
+               .lights = std::move(lights),
+               .accel = std::move(accel)};
 }
 
 }  // namespace spectrace

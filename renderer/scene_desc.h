@@ -95,7 +95,7 @@ struct SceneDesc {
   std::string file_name;
   std::string sha256;  ///< of the JSON text
   WavelengthRange range;
-  bool visible_sampling = true;  ///< draw wavelengths by the observer's sensitivity; false: uniformly
+  bool visible_sampling = true;  ///< draw wavelengths by what a pixel sees of the lights; false: uniformly
   CameraDesc camera;
   FilmDesc film;
   IntegratorDesc integrator;

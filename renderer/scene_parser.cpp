@@ -8,7 +8,9 @@
 #include <limits>
 #include <span>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
+#include "materials/tensor_file.h"
 #include "renderer/scene_desc.h"
 
 namespace spectrace {
@@ -180,7 +182,9 @@ std::filesystem::path parse_existing_file(const JsonValue& json) {
   const std::filesystem::path file = json.path();
   std::error_code failed;
   if (!std::filesystem::is_regular_file(file, failed)) {
-    json.error(fmt::format("there is no file \"{}\"", file.lexically_normal().string()));
+    const bool is_folder = std::filesystem::is_directory(file, failed);
+    const std::string name = '"' + file.lexically_normal().string() + '"';
+    json.error(is_folder ? name + " is a folder, not a file" : "there is no file " + name);
   }
   return file;
 }
@@ -229,6 +233,10 @@ SceneDesc load_scene(const std::filesystem::path& file) {
   // A scene is text written by people or scripts; beyond this it is some other file.
   constexpr std::size_t kMaxBytes = std::size_t(256) << 20;
   const std::vector<std::byte> bytes = read_file(file, kMaxBytes);
+  if (TensorFile::has_magic(bytes)) {
+    throw InputError(file.string(), "",
+                     "a measurement or separated material, not a scene; a scene's material names it");
+  }
   return parse_scene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
 }
 

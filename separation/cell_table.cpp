@@ -142,4 +142,10 @@ CellTable build_cell_table(const MeasuredBrdf& measured, const SeparationOptions
   return join(options.grid, slices, std::move(mean_q));
 }
 
+double node_measure(const HalfDifferenceGrid& grid, std::size_t h, std::size_t d) {
+  const double at = double(h), theta_d = grid.theta_d(double(d));
+  const double step_h = grid.theta_h(at + 0.5) - grid.theta_h(std::max(at - 0.5, 0.0));
+  return std::sin(grid.theta_h(at)) * step_h * std::sin(theta_d) * std::cos(theta_d);
+}
+
 }  // namespace spectrace

@@ -52,4 +52,8 @@ double cosine_weight(double cos_i, double cos_o, const SeparationOptions& option
 /// Runs in parallel; the same for any number of threads.
 CellTable build_cell_table(const MeasuredBrdf& measured, const SeparationOptions& options);
 
+/// The share of dωh dωd, in which dωi dωo = 4 cosθd dωh dωd, that one node at (theta_h, theta_d) stands for,
+/// times cosθd; without the steps of theta_d and phi_d, which are the same for all.
+[[nodiscard]] double node_measure(const HalfDifferenceGrid& grid, std::size_t h, std::size_t d);
+
 }  // namespace spectrace

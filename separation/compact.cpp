@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "separation/cell_table.h"
 
 namespace spectrace {
 namespace {
@@ -36,11 +37,10 @@ SpectralRows spectral_rows(const SeparatedTables& tables) {
   copy(tables.s_diffraction, d);
   for (std::size_t group = 0; group < grid.angular_size(); ++group) {
     const auto at_d = Eigen::Index(group % std::size_t(grid.n_theta_d));
-    const double h = double(group / std::size_t(grid.n_theta_d)), theta_d = grid.theta_d(double(at_d));
-    const double step_h = grid.theta_h(h + 0.5) - grid.theta_h(std::max(h - 0.5, 0.0));
     double sum = 0;
     for (int p = 0; p < grid.n_phi_d; ++p) sum += double(tables.rho_s[group * std::size_t(grid.n_phi_d) + p]);
-    const double light = sum * std::sin(grid.theta_h(h)) * step_h * std::sin(theta_d) * std::cos(theta_d);
+    const double light =
+        sum * node_measure(grid, group / std::size_t(grid.n_theta_d), group % std::size_t(grid.n_theta_d));
     rows.weight[d + Eigen::Index(group)] = light;
     rows.weight[at_d] += light;
   }

@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/math/math.h"
 #include "materials/half_difference.h"
+#include "separation/cell_table.h"
 #include "separation/fill_grid.h"
 #include "separation/parallel.h"
 #include "separation/reciprocal_pair.h"
@@ -122,16 +123,13 @@ Eigen::MatrixXd second_moments(const Residuals& residuals, bool with_odd) {
   const auto n = Eigen::Index(residuals.axis_size());
   std::vector<Eigen::MatrixXd> slices(std::size_t(grid.n_theta_h), Eigen::MatrixXd::Zero(n, n));
   parallel_chunks(slices.size(), [&](std::size_t h) {
-    const double step_h = grid.theta_h(double(h) + 0.5) - grid.theta_h(std::max(double(h) - 0.5, 0.0));
     Eigen::VectorXd even(n), odd(n);
     for (std::size_t i = h % kScoutStride; i < std::size_t(grid.n_theta_d) * grid.n_phi_d;
          i += kScoutStride) {
       const int d = int(i / std::size_t(grid.n_phi_d)), p = int(i % std::size_t(grid.n_phi_d));
       const Residuals::Node node = residuals.at(int(h), d, p, even, odd);
       if (!(node.mean > 0)) continue;
-      const double solid_angle =
-          std::sin(grid.theta_h(double(h))) * step_h * std::sin(grid.theta_d(d)) * std::cos(grid.theta_d(d));
-      const double weight = solid_angle * node.mean * node.mean;
+      const double weight = node_measure(grid, h, std::size_t(d)) * node.mean * node.mean;
       slices[h].selfadjointView<Eigen::Lower>().rankUpdate(even, weight);
       if (with_odd && node.odd_factor > 0) {
         // At equal cosines a ratio of either part adds the same: there the factor is 1/2.

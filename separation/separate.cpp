@@ -90,9 +90,6 @@ std::vector<float> dark_colour(const MeasuredBrdf& measured, const CellTable& ta
   return std::move(*s_d);
 }
 
-// What stays of the veto for the level alone: the most that a Lambert lobe of the true colour had too much.
-constexpr double kSupportedExcess = 0.003;
-
 /// The largest alpha_d up to `albedo` that the measurement supports. Felts and matte paints are darker than
 /// any Lambert lobe off the grazing half vectors; what such a lobe has too much no specular table can take
 /// back.
@@ -135,9 +132,7 @@ void run(const MeasuredBrdf& measured, const SeparationOptions& options, Progres
   std::vector<float> s_d;
   report.seconds_step1 += seconds_of([&] {
     s_d = dark_colour(measured, table, analytic, options);
-    const bool is_bounded =
-        options.colour == DiffuseColour::kDark && options.diffuse == DiffuseForm::kLambert;
-    if (is_bounded && !analytic.matte) {
+    if (bounds_diffuse_lobe(options) && !analytic.matte) {
       const double wanted = analytic.fit.albedo_d;
       analytic.fit.albedo_d = supported_albedo(table, wanted);
       report.albedo_scale = wanted > 0 ? analytic.fit.albedo_d / wanted : 1;

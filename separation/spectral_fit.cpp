@@ -12,6 +12,7 @@
 #include "separation/log_root.h"
 #include "separation/parallel.h"
 #include "separation/spectral_sums.h"
+#include "separation/supported_colour.h"
 #include "separation/two_lobe_fit.h"
 
 namespace spectrace {
@@ -145,17 +146,19 @@ void fit_diffraction(const StripFit& strip, float prior, SpectralFit& fit) {
   }
 }
 
-/// s_d and s_sun.
-void fit_eq_18(StripFit& strip, const std::vector<float>& s_d, SpectralFit& fit) {
+/// s_d and s_sun. `is_bounded`: no colour brighter than the measurement supports.
+void fit_eq_18(StripFit& strip, const std::vector<float>& s_d, bool is_bounded, SpectralFit& fit) {
+  // A lone lit wavelength has as many as the axis; twice that for its fit.
+  const float highest = 2 * static_cast<float>(fit.s_d.size());
   if (s_d.empty()) {
     const TwoLobes two = fit_two_lobes(strip.whole, strip.count);
     strip.whole.s_d = two.s_d;
     strip.s_sun = two.s_s;
     fit.unfinished += two.unfinished;
+    if (is_bounded && support_colour(strip.whole, strip.count)) fit.unfinished += fit_sun(strip, highest);
   } else {
     std::copy_n(&s_d[strip.first], strip.count, strip.whole.s_d.begin());
-    // A lone lit wavelength has as many as the axis; twice that for its fit.
-    fit.unfinished += fit_sun(strip, 2 * static_cast<float>(fit.s_d.size()));
+    fit.unfinished += fit_sun(strip, highest);
   }
   strip.compared.s_d = strip.whole.s_d;
   std::copy_n(strip.whole.s_d.begin(), strip.count, &fit.s_d[strip.first]);
@@ -198,7 +201,7 @@ class BlockFit {
                       .compared = problem,
                       .first = first,
                       .count = static_cast<int>(std::min(kStrip, n - first))});
-      fit_eq_18(fits.back(), s_d_, fit_);
+      fit_eq_18(fits.back(), s_d_, bounds_diffuse_lobe(options_), fit_);
     }
     if (options_.residual == SpectralResidual::kPrinted) {
       std::vector<Strip> s_d;

@@ -33,9 +33,8 @@ Energies energies(const CellTable& table, double lambert) {
   const HalfDifferenceGrid& grid = table.grid;
   Energies e;
   for (std::size_t group = 0; group < grid.angular_size(); ++group) {
-    const double h = double(group / grid.n_theta_d), theta_d = grid.theta_d(double(group % grid.n_theta_d));
-    const double step_h = (grid.theta_h(h + 0.5) - grid.theta_h(std::max(h - 0.5, 0.0)));
-    const double measure = std::sin(grid.theta_h(h)) * step_h * std::sin(theta_d) * std::cos(theta_d);
+    const auto n_d = std::size_t(grid.n_theta_d);
+    const double measure = node_measure(grid, group / n_d, group % n_d);
     for (std::size_t i = table.begin[group]; i < table.begin[group + 1]; ++i) {
       const double w = measure * table.cos_sum(i), mean = double(table.mean[i]);
       e.total += w * mean;

@@ -19,6 +19,14 @@ double split_cell(double mean, double diffuse, double specular, double eta_diffu
 /// measurement.
 double lambert_excess(const CellTable& table, double albedo);
 
+/// The most that a Lambert lobe of the true colour had too much over the acquired materials of
+/// known_truth_test: beyond it the measurement refutes the lobe's level.
+inline constexpr double kSupportedExcess = 0.003;
+/// Whether it is to be lowered then: not in the paper's printed form, nor where the lobe's shape gives way.
+[[nodiscard]] inline bool bounds_diffuse_lobe(const SeparationOptions& options) {
+  return options.colour == DiffuseColour::kDark && options.diffuse == DiffuseForm::kLambert;
+}
+
 struct SplitResult {
   /// [theta_h][theta_d][phi_d] as SeparatedTables::rho_s: ρ_s (cosθi + cosθo), >= 0, below the horizon
   /// filled.

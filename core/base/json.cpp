@@ -64,8 +64,13 @@ bool NumberRange::contains(double x) const {
 }
 
 std::string NumberRange::text() const {
-  const bool from_open = min_open || std::isinf(min), to_open = max_open || std::isinf(max);
-  return fmt::format("{}{}, {}{}", from_open ? '(' : '[', min, max, to_open ? ')' : ']');
+  // Nobody who reads of it means the largest number that a Float holds.
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const bool has_min = min > -kLargest, has_max = max < kLargest;
+  if (has_min && !has_max) return fmt::format("{} {}", min_open ? ">" : ">=", min);
+  if (has_max && !has_min) return fmt::format("{} {}", max_open ? "<" : "<=", max);
+  return fmt::format("in {}{}, {}{}", min_open || !has_min ? '(' : '[', min, max,
+                     max_open || !has_max ? ')' : ']');
 }
 
 bool JsonValue::exists() const { return node_ != nullptr; }
@@ -126,7 +131,7 @@ double JsonValue::number(double fallback, NumberRange range) const {
   if (!exists()) return fallback;
   if (is_number() && range.contains(node_of(node_).number)) return node_of(node_).number;
   const bool is_bounded = std::isfinite(range.min) || std::isfinite(range.max);
-  expected(is_bounded ? fmt::format("a number in {}", range.text()) : "a number");
+  expected(is_bounded ? fmt::format("a number {}", range.text()) : "a number");
   return fallback;
 }
 

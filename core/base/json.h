@@ -18,7 +18,7 @@
 
 namespace spectrace {
 
-/// A closed or half-open interval a number must lie in; printed as "(0, 1]" in messages.
+/// A closed or half-open interval a number must lie in; printed as "in (0, 1]" or "> 0" in messages.
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();

@@ -17,6 +17,10 @@ namespace {
 // The floor of visible(): at its densest the observer's curve is 100 times this, so the few paths that fall
 // on wavelengths the eye hardly sees carry at most that weight.
 constexpr double kVisibleFloor = 0.02;
+// Of the lights' power may be what no pixel sees: five times the variance, where it is all, is the price.
+constexpr double kFlatShare = 0.2;
+
+constexpr int kGuides = 1024;  // more than cells: a search then tries two or three
 
 }  // namespace
 
@@ -40,6 +44,11 @@ WavelengthDistribution::WavelengthDistribution(WavelengthRange range, std::vecto
   }
   cumulative_.back() = 1;
   for (Float& d : density_) d = static_cast<Float>(double(d) / total);
+  const int cells = static_cast<int>(density_.size()) - 1;
+  for (int g = 0; g < kGuides; ++g) {
+    guide_.push_back(find_cell(cells, double(g) / kGuides,
+                               [&](int node) { return cumulative_[static_cast<std::size_t>(node)]; }));
+  }
 }
 
 WavelengthDistribution WavelengthDistribution::uniform(WavelengthRange range) {
@@ -47,19 +56,28 @@ WavelengthDistribution WavelengthDistribution::uniform(WavelengthRange range) {
   return {range, {1, 1}};
 }
 
-WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range) {
+WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
+                                                       const std::function<double(double)>& emission) {
   SPECTRACE_CHECK(std::isfinite(range.width_nm()) && range.width_nm() > 0);
   const auto steps = static_cast<std::size_t>(std::ceil(double(range.width_nm())));
-  std::vector<double> seen(steps + 1);
-  double mean = 0;
+  std::vector<double> seen(steps + 1), lit(steps + 1);
+  double mean = 0, mean_lit = 0;
   for (std::size_t i = 0; i <= steps; ++i) {
-    const Xyz bar = cie_xyz_bar(range.min_nm + double(range.width_nm()) * double(i) / double(steps));
-    seen[i] = bar[0] + bar[1] + bar[2];
+    const double nm = range.min_nm + double(range.width_nm()) * double(i) / double(steps);
+    const Rgb rgb = xyz_to_rgb(cie_xyz_bar(nm));
+    seen[i] = std::hypot(rgb[0], rgb[1], rgb[2]);
+    lit[i] = emission ? seen[i] * emission(nm) : 0;
     mean += seen[i] / double(steps + 1);
+    mean_lit += lit[i] / double(steps + 1);
   }
   if (mean == 0) return uniform(range);  // a range nobody sees
+  const bool is_lit = mean_lit > 0 && std::isfinite(mean_lit);
+  const double flat = is_lit ? kFlatShare : 1;
   std::vector<Float> density;
-  for (const double s : seen) density.push_back(static_cast<Float>(s / mean + kVisibleFloor));
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const double share = is_lit ? (1 - flat) * (lit[i] / mean_lit) : 0;
+    density.push_back(static_cast<Float>(flat * seen[i] / mean + share + kVisibleFloor));
+  }
   return {range, std::move(density)};
 }
 
@@ -71,7 +89,8 @@ SampledWavelengths WavelengthDistribution::sample(Float u) const {
     // sec. 3.
     double v = clamp_unit(u) + double(lane) / kLanes;
     if (v >= 1) v -= 1;
-    const int i = find_cell(cells, v, [&](int node) { return cumulative_[static_cast<std::size_t>(node)]; });
+    int i = guide_[std::min(static_cast<std::size_t>(v * kGuides), std::size_t{kGuides - 1})];
+    while (i + 1 < cells && cumulative_[static_cast<std::size_t>(i) + 1] <= v) ++i;
     const auto k = static_cast<std::size_t>(i);
     const double step_nm = double(range_.width_nm()) / cells;
     const double t = invert_linear(density_[k], density_[k + 1], (v - cumulative_[k]) / step_nm);

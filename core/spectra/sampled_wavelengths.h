@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "core/spectra/sampled_spectrum.h"
@@ -45,9 +46,13 @@ class WavelengthDistribution {
  public:
   /// Constant density: 1 / width.
   static WavelengthDistribution uniform(WavelengthRange range);
-  /// Proportional to the observer's x̄ + ȳ + z̄ with a uniform floor of 2 % of the mean, so that every
-  /// wavelength of the range can be drawn.
-  static WavelengthDistribution visible(WavelengthRange range);
+  /// What a pixel sees of each wavelength, the length of its linear sRGB vector, times what is there to be
+  /// seen: a path's squared error is least where its density follows the colour it brings. `emission`: of all
+  /// lights at a wavelength [nm], >= 0, any unit; empty: as much everywhere. A fifth of the density knows
+  /// nothing of the lights, since one of them may be hidden, and 2 % of the mean is left to wavelengths
+  /// nobody sees.
+  static WavelengthDistribution visible(WavelengthRange range,
+                                        const std::function<double(double)>& emission = {});
 
   /// `u` in [0, 1).
   [[nodiscard]] SampledWavelengths sample(Float u) const;
@@ -60,6 +65,7 @@ class WavelengthDistribution {
   WavelengthRange range_;
   std::vector<Float> density_;      // piecewise linear over equal steps, integrates to 1 [1/nm]
   std::vector<double> cumulative_;  // at the same nodes; first 0, last 1
+  std::vector<int> guide_;          // the cells in which equal parts of the unit interval begin
 };
 
 }  // namespace spectrace

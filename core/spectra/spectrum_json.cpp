@@ -80,7 +80,7 @@ MaybeSpectrum parse_file(const JsonValue& json, const JsonValue& column, NumberR
     TabulatedSpectrum table = read_spd(file, number);
     for (std::size_t i = 0; i < table.values().size(); ++i) {
       if (range.contains(table.values()[i])) continue;
-      json.error(fmt::format("{}: the value {} at {} nm is not in {}", file.string(), table.values()[i],
+      json.error(fmt::format("{}: the value {} at {} nm is not {}", file.string(), table.values()[i],
                              table.lambda_nm()[i], range.text()));
       return std::nullopt;
     }

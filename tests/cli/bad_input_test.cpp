@@ -64,6 +64,26 @@ TEST_F(BadInput, FoldersAndForeignFilesInPlaceOfInput) {
   EXPECT_EQ(names().size(), 5U);
 }
 
+TEST_F(BadInput, OneKindOfOursInPlaceOfAnother) {
+  write_measured("m.bsdf");
+  ASSERT_EQ(separate("m.bsdf", "m.sep").exit_code, 0);
+  expect_bad_input({"separate", "m.sep", "-o", "out.sep"},
+                   "m.sep: a separated material (.sep), not a measurement");
+  expect_bad_input({"m.bsdf"}, "m.bsdf: a measurement or separated material, not a scene");
+  expect_bad_input({"m.sep"}, "m.sep: a measurement or separated material, not a scene");
+}
+
+TEST_F(BadInput, ADamagedNameIsNotQuotedWhole) {
+  const std::string name(30'000, '\x01');
+  std::string bytes("tensor_file\0\x01\0\x01\0\0\0", 18);
+  bytes += std::string("\x30\x75", 2) + name + std::string(64, '\0');
+  write_text(folder_ / "long.bsdf", bytes);
+  const ProgramResult result = run({"inspect", "long.bsdf"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.errors.find("... of 30000 bytes"), std::string::npos) << result.errors.substr(0, 300);
+  EXPECT_LT(result.errors.size(), 400U);
+}
+
 TEST_F(BadInput, HostileJson) {
   for (const std::string& text :
        {std::string(100000, '['), std::string(R"({"camera": 1e400})"),

@@ -143,6 +143,30 @@ TEST_F(Compare, RefusesWrongUse) {
   EXPECT_EQ(run_spectrace({"compare", r, r, "--epsilon", "nan"}).exit_code, 2);
 }
 
+TEST_F(Compare, SaysWhereFiguresHoldNoise) {
+  const auto rendered = [&](const std::string& name, const std::string& seed, std::int64_t paired,
+                            const std::string& model) {
+    Metadata metadata{
+        {"spectrace:seed", seed}, {"spectrace:spp", std::int64_t(4)}, {"spectrace:paired", paired}};
+    if (!model.empty()) metadata["spectrace:separation"] = model;
+    write_exr(folder_ / name, constant(0.5f), metadata);
+    return (folder_ / name).string();
+  };
+  const std::string raw = rendered("raw.exr", "0", 0, ""), raw_paired = rendered("rawp.exr", "0", 1, "");
+  const std::string sun = rendered("sun.exr", "0", 0, "sun"),
+                    sun_paired = rendered("sunp.exr", "0", 1, "sun");
+  const std::string other = rendered("other.exr", "1", 0, "");
+  const auto note = [](const std::string& a, const std::string& b) {
+    return run_spectrace({"compare", a, b}).says("noise is part of these figures");
+  };
+  EXPECT_TRUE(note(raw, sun));
+  EXPECT_TRUE(note(raw, sun_paired)) << "half paired is not paired";
+  EXPECT_TRUE(note(raw, other)) << "seeds differ";
+  EXPECT_FALSE(note(raw_paired, sun_paired));
+  EXPECT_FALSE(note(raw, rendered("again.exr", "0", 0, ""))) << "the same model twice";
+  EXPECT_FALSE(note(raw, file("foreign.exr", constant(0.5f)))) << "nothing is known of other programs' noise";
+}
+
 TEST_F(Compare, WritesItsFiguresAsJson) {
   const std::string r = file("r.exr", constant(0.5f)), t = file("t.exr", constant(0.25f));
   const std::string json = (folder_ / "figures.json").string();

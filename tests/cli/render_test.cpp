@@ -157,6 +157,10 @@ TEST_F(Render, SeparatesOnceAndKeepsTheResult) {
   EXPECT_EQ(std::filesystem::last_write_time(kept), written);
   EXPECT_EQ(read_image(folder_ / "first.exr").data, read_image(folder_ / "second.exr").data);
 
+  // Unless told otherwise, pictures of different models are different files.
+  ASSERT_EQ(run({"scene.json", "--separate", "sun", "--cache", "kept", "--grid", "24x20x30"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "scene-sun.exr"));
+
   // Another model is in the same file; a damaged one is made again.
   ASSERT_EQ(render("sun", "sun.exr").exit_code, 0);
   EXPECT_EQ(std::filesystem::last_write_time(kept), written);

@@ -225,9 +225,9 @@ TEST(NumberRange, ContainsItsClosedEndsOnlyAndNoNan) {
   EXPECT_TRUE(kHalfOpen.contains(1));
   EXPECT_FALSE(kHalfOpen.contains(std::nan("")));
   EXPECT_FALSE(kAnyNumber.contains(std::nan("")));
-  EXPECT_EQ(kHalfOpen.text(), "(0, 1]");
-  EXPECT_EQ(kPositive.text(), "(0, inf)");
-  EXPECT_EQ(kUnitInterval.text(), "[0, 1]");
+  EXPECT_EQ(kHalfOpen.text(), "in (0, 1]");
+  EXPECT_EQ(kPositive.text(), "> 0");
+  EXPECT_EQ(kUnitInterval.text(), "in [0, 1]");
 }
 
 TEST(JsonWriter, WritesWhatTheReaderReads) {

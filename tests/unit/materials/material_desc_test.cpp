@@ -166,8 +166,8 @@ TEST(MaterialDesc, NamesEachMistakeOnce) {
   expect_problem(R"({"name": "a", "reflectance": 0.5})", "type");
   expect_problem(R"({"type": "lambert", "reflectance": 0.5})", "name");
   expect_problem(R"({"name": "a", "type": "conductor", "eta": 0.2})", "\"k\"");
-  expect_problem(R"({"name": "a", "type": "conductor", "eta": 0, "k": 1})", "must lie in (0, inf");
-  expect_problem(R"({"name": "a", "type": "conductor", "eta": 1, "k": -1})", "must lie in [0, inf");
+  expect_problem(R"({"name": "a", "type": "conductor", "eta": 0, "k": 1})", "must be > 0 at");
+  expect_problem(R"({"name": "a", "type": "conductor", "eta": 1, "k": -1})", "must be >= 0 at");
   expect_problem(R"({"name": "a", "type": "conductor", "eta": 0.2, "k": 3, "roughness": 0.0001})",
                  "/roughness");
   expect_problem(R"({"name": "a", "type": "conductor", "eta": 0.2, "k": 3, "roughness": [0.1, 2]})",
@@ -176,7 +176,7 @@ TEST(MaterialDesc, NamesEachMistakeOnce) {
                  "thickness_nm");
   expect_problem(
       R"({"name": "a", "type": "conductor", "eta": 0.2, "k": 3, "thin_film": {"eta": 0.9, "thickness_nm": 9}})",
-      "must lie in [1, inf");
+      "must be >= 1 at");
   expect_problem(R"({"name": "a", "type": "conductor", "metal_file": "absent.yml"})", "absent.yml");
   expect_problem(
       R"({"name": "a", "type": "glossy", "reflectance": 0.5, "f0": 0.04, "eta": 1.5, "roughness": 0.3})",

@@ -193,7 +193,7 @@ TEST(SceneParser, NamesFilesThatAreNotThere) {
                  "/shapes/0/file: there is no file \"" + (kScenes / "meshes/tours.obj").string() + "\"");
   expect_problem(R"("lights": [{"type": "environment", "file": "sky.hdr"}])",
                  "/lights/0/file: there is no file");
-  expect_problem(R"("shapes": [{"type": "mesh", "material": "clay", "file": "meshes"}])", "there is no file");
+  expect_problem(R"("shapes": [{"type": "mesh", "material": "clay", "file": "meshes"}])", "is a folder, not a file");
   EXPECT_EQ(problems(R"({"camera": {"origin": [0, 0, 1], "target": [0, 0, 0]},
                          "materials": [{"name": "m", "type": "measured", "file": "none.bsdf"}]})"),
             std::vector<std::string>{"2:82: /materials/0/file: there is no file \"" +
@@ -208,9 +208,9 @@ TEST(SceneParser, RefusesShapesThatAreNone) {
       R"("shapes": [{"type": "quad", "material": "clay", "corner": [0, 0, 0], "edge_u": [1, 2, 3], "edge_v": [-2, -4, -6]}])",
       "/shapes/0/edge_v: is parallel to edge_u");
   expect_problem(R"("shapes": [{"type": "sphere", "material": "clay", "radius": 0}])",
-                 "/shapes/0/radius: expected a number in (0, ");
+                 "/shapes/0/radius: expected a number > 0, ");
   expect_problem(R"("shapes": [{"type": "sphere", "material": "clay", "radius": 1e300}])",
-                 "/shapes/0/radius: expected a number in (0, ");
+                 "/shapes/0/radius: expected a number > 0, ");
   expect_problem(
       R"("shapes": [{"type": "mesh", "material": "clay", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 3]]}])",
       "/shapes/0/triangles/0/2: expected an integer in [0, 2], got 3");
