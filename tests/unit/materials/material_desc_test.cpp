@@ -74,8 +74,8 @@ TEST(MaterialDesc, ReadsPlastic) {
   EXPECT_EQ(std::get<PlasticDesc>(parse(head + R"("eta": 1.5, "roughness": 0.2})").kind).alpha, Float(0.2));
   EXPECT_TRUE(has_delta_lobe(build_material(parse(head + R"("eta": 1.5})"))));
   EXPECT_FALSE(has_delta_lobe(build_material(parse(head + R"("eta": 1.5, "roughness": 1})"))));
-  expect_problem(head + R"("eta": 0.9})", "must lie in [1, 4]");
-  expect_problem(head + R"("eta": 5})", "must lie in [1, 4]");
+  expect_problem(head + R"("eta": 0.9})", "must be in [1, 4]");
+  expect_problem(head + R"("eta": 5})", "must be in [1, 4]");
   expect_problem(head + R"("eta": 1.5, "roughness": [0.1, 0.2]})", "/roughness");
   expect_problem(head + R"("roughness": 0.1})", "eta");
 }
