@@ -181,9 +181,9 @@ LobeWeights lobe_weights(const CellTable& table, const SplitResult& split) {
 /// Some strips of the axis: all models, then their residuals.
 class BlockFit {
  public:
-  BlockFit(const CellTable& table, const LobeWeights& lobes, const std::vector<float>& s_d,
+  BlockFit(const CellTable& table, const LobeWeights& lobes, const std::vector<float>& s_d, bool is_bounded,
            const SeparationOptions& options, SpectralFit& fit)
-      : table_(table), lobes_(lobes), s_d_(s_d), options_(options), fit_(fit) {}
+      : table_(table), lobes_(lobes), s_d_(s_d), is_bounded_(is_bounded), options_(options), fit_(fit) {}
 
   void run(const PaddedSpectra& spectra, std::size_t first_strip, std::size_t strips, LogBlock& data,
            LogBlock& remainder) const {
@@ -201,7 +201,7 @@ class BlockFit {
                       .compared = problem,
                       .first = first,
                       .count = static_cast<int>(std::min(kStrip, n - first))});
-      fit_eq_18(fits.back(), s_d_, bounds_diffuse_lobe(options_), fit_);
+      fit_eq_18(fits.back(), s_d_, is_bounded_, fit_);
     }
     if (options_.residual == SpectralResidual::kPrinted) {
       std::vector<Strip> s_d;
@@ -222,6 +222,7 @@ class BlockFit {
   const CellTable& table_;
   const LobeWeights& lobes_;
   const std::vector<float>& s_d_;
+  bool is_bounded_;
   const SeparationOptions& options_;
   SpectralFit& fit_;
 };
@@ -245,7 +246,9 @@ SpectralFit fit_spectra(const MeasuredBrdf& measured, const CellTable& table, co
   const std::size_t most = (spectra.strips() + blocks - 1) / blocks;
   LogBlock data(table.fitted(), most);
   LogBlock remainder(table.fitted(), options.residual == SpectralResidual::kPrinted ? most : 0);
-  const BlockFit block(table, lobes, s_d, options, fit);
+  // What a lone diffuse lobe has too much is noise: no other lobe could take its place.
+  const bool is_bounded = bounds_diffuse_lobe(options) && split.specular_share > 0;
+  const BlockFit block(table, lobes, s_d, is_bounded, options, fit);
   for (std::size_t i = 0; i < blocks; ++i) {
     const std::size_t first = i * spectra.strips() / blocks, end = (i + 1) * spectra.strips() / blocks;
     block.run(spectra, first, end - first, data, remainder);

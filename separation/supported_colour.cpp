@@ -29,7 +29,7 @@ Excess<float> excess_of(const StripProblem& p, const CellRange& cells) {
       const float scale = (p.table.cos_i[i] + p.table.cos_o[i]) / p.table.weight[i], lobe = p.diffuse[i];
       const float* const data = p.log_data + i * kStrip;
       for (std::size_t k = 0; k < kStrip; ++k) {
-        const float x = std::max(fast_exp(data[k]) - p.epsilon, 0.0F), too_much = p.s_d[k] * lobe - x;
+        const float x = std::max(fast_wide_exp(data[k]) - p.epsilon, 0.0F), too_much = p.s_d[k] * lobe - x;
         sums.total[k] += scale * x;
         sums.missing[k] += too_much > 0 ? scale * too_much : 0.0F;
         sums.slope[k] += too_much > 0 ? scale * lobe : 0.0F;
