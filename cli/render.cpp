@@ -74,8 +74,11 @@ bool separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& 
   options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
   std::size_t count = 0;
   std::vector<MaterialDesc*> materials;
-  for (MaterialDesc& material : scene.materials) {
-    for_each_desc(material, [&](MaterialDesc& part) { materials.push_back(&part); });
+  for (MaterialDesc& whole : scene.materials) {
+    for_each_desc(whole, [&](MaterialDesc& part) {
+      if (part.name.empty()) part.name = whole.name;  // for messages
+      materials.push_back(&part);
+    });
   }
   for (MaterialDesc* const each : materials) {
     MaterialDesc& material = *each;

@@ -234,7 +234,7 @@ std::string AcquisitionOptions::problem() const {
 
 MeasuredTables acquire(const Material& material, const AcquisitionOptions& options, Progress& progress) {
   if (has_delta_lobe(material)) {
-    throw InputError(options.description, "", "a perfectly smooth surface has no finite BRDF to measure");
+    throw InputError(options.description, "", "a mirror, and a hole, has no finite BRDF to measure");
   }
   if (is_transmissive(material)) {
     throw InputError(options.description, "", "light passes through this material: no BRDF holds all of it");

@@ -147,6 +147,34 @@ TEST(Spectral, DispersingGlassKeepsTheFurnace) {
   EXPECT_NEAR(y.mean, 1, kSigmas * y.standard_error + 1e-4);
 }
 
+TEST(Spectral, NoGlassColoursTheFurnace) {
+  // Looking into the ball itself, under a white sky: whatever disperses or interferes, no colour is left
+  // over.
+  const ThinFilm film{.eta = Spectrum::constant(Float(2.2)), .thickness_nm = 300};
+  const std::vector<std::pair<std::string, decltype(MaterialDesc::kind)>> balls{
+      {"smooth", Dielectric{kBk7}},
+      {"under a film", Dielectric{kBk7, film}},
+      {"rough", RoughDielectric(kBk7, {kMinAlpha, kMinAlpha})},
+      {"rough, under a film", RoughDielectric(kBk7, {kMinAlpha, kMinAlpha}, film)}};
+  const Xyz white = spectrum_to_xyz(Spectrum::constant(1));
+  for (const auto& [name, kind] : balls) {
+    SceneDesc scene = empty_scene();
+    scene.materials = {{.name = "ball", .where = "", .kind = kind}};
+    scene.shapes = {sphere({0, 0, 0}, 1, "ball")};
+    scene.lights = {sky(1)};
+    scene.camera.fov_deg = 12;
+    scene.integrator = {.max_depth = 200, .roulette_depth = 200};
+    const Image image = render_scene(scene, 4096).image;
+    for (int c = 0; c < 3; ++c) {
+      const Estimate e = estimate_xyz(image, "", c);
+      // 1e-3: what facets of the least roughness lose, at some incidences up to their own slope.
+      EXPECT_NEAR(e.mean / white[c], 1, kSigmas * e.standard_error / white[c] + 1e-3) << name << " "
+                                                                                      << "XYZ"[c];
+      EXPECT_LT(kSigmas * e.standard_error / white[c], 0.02) << name;
+    }
+  }
+}
+
 TEST(Spectral, LightGatheredBeforeDispersionKeepsAllItsWavelengths) {
   // With two segments nothing that shines lies behind the glass: whether it disperses must not change a bit
   // of what the floor has sent before (hard case H12: terminated wavelengths were lit until then).
