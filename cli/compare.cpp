@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/noise_note.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
@@ -114,30 +115,6 @@ struct LimitResult {
   double found = 0;
   bool holds = false;
 };
-
-/// Pictures of this program that do not share their random numbers differ by noise too: says so, else empty.
-std::string noise_note(const std::string& reference, const std::string& test) {
-  const Metadata of_reference = read_metadata(reference), of_test = read_metadata(test);
-  if (!of_reference.contains("spectrace:seed") || !of_test.contains("spectrace:seed")) return {};
-  for (const char* key : {"spectrace:seed", "spectrace:spp"}) {
-    const auto in_reference = of_reference.find(key), in_test = of_test.find(key);
-    if (in_test == of_test.end() || in_reference == of_reference.end()) return {};
-    if (in_reference->second != in_test->second) {
-      return fmt::format("{} differs between the pictures: their noise is part of these figures", key);
-    }
-  }
-  const auto is_paired = [](const Metadata& metadata) {
-    const auto paired = metadata.find("spectrace:paired");
-    return paired != metadata.end() && paired->second == decltype(paired->second)(std::int64_t(1));
-  };
-  if (is_paired(of_reference) && is_paired(of_test)) return {};
-  const auto scene = [](const Metadata& metadata) {
-    const auto separation = metadata.find("spectrace:separation");
-    return separation == metadata.end() ? Metadata::mapped_type(std::string()) : separation->second;
-  };
-  if (scene(of_reference) == scene(of_test)) return {};
-  return "of different models and not both rendered with --paired: their noise is part of these figures";
-}
 
 struct Comparison {
   std::string test;

@@ -7,20 +7,15 @@
 
 #include "core/math/math.h"
 #include "materials/material.h"
+#include "tests/support/shading_point.h"
 
 namespace spectrace {
 namespace {
 
 constexpr double kRounding = 2e-6;  // a unit vector and a Fresnel term in single precision
 
-SampledWavelengths wavelengths() {
-  std::array<Float, kLanes> nm{}, pdf{};
-  for (int i = 0; i < kLanes; ++i) nm[std::size_t(i)] = Float(420 + 80 * i);
-  pdf.fill(1);
-  return {nm, pdf};
-}
-const SampledWavelengths kLambda = wavelengths();
-const ShadingPoint kAt{.lambda = kLambda};
+using test::kAt;
+using test::kLambda;
 
 Vec3 at_angle(double theta_deg, bool above = true) {
   const double theta = theta_deg * kPi64 / 180;

@@ -7,18 +7,13 @@
 
 #include "core/math/math.h"
 #include "materials/material.h"
+#include "tests/support/shading_point.h"
 
 namespace spectrace {
 namespace {
 
-SampledWavelengths wavelengths() {
-  std::array<Float, kLanes> nm{}, pdf{};
-  for (int i = 0; i < kLanes; ++i) nm[std::size_t(i)] = Float(420 + 80 * i);
-  pdf.fill(1);
-  return {nm, pdf};
-}
-const SampledWavelengths kLambda = wavelengths();
-const ShadingPoint kAt{.lambda = kLambda};
+using test::kAt;
+using test::kLambda;
 
 const Vec3 kWo = normalize({Float(0.3), Float(-0.2), Float(0.7)}),
            kWi = normalize({Float(-0.4), Float(0.5), Float(0.6)});

@@ -11,18 +11,12 @@
 #include "materials/fresnel.h"
 #include "materials/lambert.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/shading_point.h"
 
 namespace spectrace {
 namespace {
 
-SampledWavelengths wavelengths() {
-  std::array<Float, kLanes> nm{}, pdf{};
-  for (int i = 0; i < kLanes; ++i) nm[std::size_t(i)] = Float(420 + 80 * i);
-  pdf.fill(1);
-  return {nm, pdf};
-}
-const SampledWavelengths kLambda = wavelengths();
-const ShadingPoint kAt{.lambda = kLambda};
+using test::kAt;
 
 Vec3 at_cosine(double cosine) {
   const double sine = std::sqrt(1 - cosine * cosine);
