@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <new>
-#include <set>
 #include <string>
 #include <system_error>
 #include <utility>

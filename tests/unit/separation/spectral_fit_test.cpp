@@ -71,6 +71,16 @@ TEST(FastLog, AgreesWithTheLibraryOverNineDecades) {
   EXPECT_EQ(fast_log(1.0F), 0.0F);
 }
 
+TEST(FastLog, TheExponentialsKeepTheirBounds) {
+  for (float x = -12; x <= 12; x += 1.0F / 512) {
+    const double exact = std::exp(double(x));
+    ASSERT_NEAR(double(fast_wide_exp(x)) / exact, 1, 1.2e-5) << x;
+    if (std::abs(x) <= 2) {
+      ASSERT_NEAR(double(fast_exp(x)) / exact, 1, 3e-6) << x;
+    }
+  }
+}
+
 TEST(LogRoot, NoColourIsBetterThanTheOneFound) {
   test::TestRandom random(3);
   for (int trial = 0; trial < 300; ++trial) {
