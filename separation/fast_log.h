@@ -29,7 +29,7 @@ SPECTRACE_KERNEL inline float fast_log(float x) {
   return exponent * kLn2 + (f + (f * square * p - 0.5F * square));
 }
 
-/// e^x for |x| <= 2, relative error < 3e-6, and of the order of 1e-7 where |x| < 0.1.
+/// e^x for |x| <= 2, relative error < 1e-5, and of the order of 1e-7 where |x| < 0.1.
 SPECTRACE_KERNEL inline float fast_exp(float x) {
   const float y = x / 4;  // e^x = (e^y)^4, |y| <= ½: the series up to y⁶
   float e = 1 + y / 6;
