@@ -11,19 +11,13 @@
 #include "cli/inspect_report.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/overloaded.h"
 #include "materials/material.h"
 #include "renderer/scene_desc.h"
 
 namespace spectrace::cli {
 
 namespace {
-
-template <typename... Visitors>
-struct Overloaded : Visitors... {
-  using Visitors::operator()...;
-};
-template <typename... Visitors>
-Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 std::string text_of(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 

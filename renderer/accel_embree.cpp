@@ -132,7 +132,7 @@ struct Accel::Impl {
     rtcAttachGeometryByID(scene, geometry, id);
     rtcReleaseGeometry(geometry);
   }
-  void attach_mesh(RTCScene scene, const TriangleMesh& mesh, std::uint32_t id) const {
+  void attach_shape(RTCScene scene, const TriangleMesh& mesh, std::uint32_t id) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
@@ -150,7 +150,7 @@ struct Accel::Impl {
     }
     attach(scene, geometry, id);
   }
-  void attach_quad(RTCScene scene, const Quad& quad, std::uint32_t id) const {
+  void attach_shape(RTCScene scene, const Quad& quad, std::uint32_t id) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                  RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4));
@@ -168,7 +168,7 @@ struct Accel::Impl {
     }
     attach(scene, geometry, id);
   }
-  void attach_sphere(RTCScene scene, const Sphere& sphere, std::uint32_t id) {
+  void attach_shape(RTCScene scene, const Sphere& sphere, std::uint32_t id) {
     spheres.push_back(sphere);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
@@ -181,13 +181,7 @@ struct Accel::Impl {
   void attach_shapes(RTCScene scene, const Geometry& geometry, ShapeRange range) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
       const std::uint32_t id = i - range.begin;
-      if (const auto* sphere = std::get_if<Sphere>(&geometry.shapes[i].geometry)) {
-        attach_sphere(scene, *sphere, id);
-      } else if (const auto* quad = std::get_if<Quad>(&geometry.shapes[i].geometry)) {
-        attach_quad(scene, *quad, id);
-      } else {
-        attach_mesh(scene, std::get<TriangleMesh>(geometry.shapes[i].geometry), id);
-      }
+      std::visit([&](const auto& shape) { attach_shape(scene, shape, id); }, geometry.shapes[i].geometry);
     }
   }
   void attach_instance(const Instance& instance, std::uint32_t id) {

@@ -23,7 +23,7 @@ std::optional<Float> cone_size(const Sphere& sphere, Float distance) {
 
 Float cone_pdf(Float one_minus_cos_max) { return 1 / (2 * kPi * one_minus_cos_max); }
 
-std::optional<LightPoint> sample_sphere(const Sphere& sphere, Vec3 from, Vec2 u) {
+std::optional<LightPoint> sample(const Sphere& sphere, Vec3 from, Vec2 u) {
   const Vec3 to_center = sphere.center - from;
   const Float distance = length(to_center);
   const std::optional<Float> size = cone_size(sphere, distance);
@@ -67,22 +67,27 @@ std::optional<LightPoint> sample_flat(Vec3 point, Vec3 scaled_normal, Float magn
 
 Vec3 scaled_normal(const TriangleLight& t) { return cross(t.edge_1, t.edge_2) * Float(0.5); }
 
-}  // namespace
+std::optional<LightPoint> sample(const Quad& quad, Vec3 from, Vec2 u) {
+  return sample_flat(quad.corner + quad.edge_u * u.x + quad.edge_v * u.y, quad.scaled_normal(),
+                     largest_coordinate(quad), from);
+}
 
-std::optional<LightPoint> sample_light(const LightShape& light, Vec3 from, Vec2 u) {
-  if (const auto* sphere = std::get_if<Sphere>(&light)) {
-    return sample_sphere(*sphere, from, u);
-  }
-  if (const auto* quad = std::get_if<Quad>(&light)) {
-    return sample_flat(quad->corner + quad->edge_u * u.x + quad->edge_v * u.y, quad->scaled_normal(),
-                       largest_coordinate(*quad), from);
-  }
-  const auto& triangle = std::get<TriangleLight>(light);
+std::optional<LightPoint> sample(const TriangleLight& triangle, Vec3 from, Vec2 u) {
   // Square to triangle, area preserving: Turk 1990.
   const Float root = std::sqrt(u.x);
   const Vec3 point = triangle.p0 + triangle.edge_1 * (root * (1 - u.y)) + triangle.edge_2 * (root * u.y);
   return sample_flat(point, scaled_normal(triangle),
                      max_abs(triangle.p0) + max_abs(triangle.edge_1) + max_abs(triangle.edge_2), from);
+}
+
+double area(const Sphere& sphere) { return 4 * double(kPi) * sphere.radius * sphere.radius; }
+double area(const Quad& quad) { return length(quad.scaled_normal()); }
+double area(const TriangleLight& triangle) { return length(scaled_normal(triangle)); }
+
+}  // namespace
+
+std::optional<LightPoint> sample_light(const LightShape& light, Vec3 from, Vec2 u) {
+  return std::visit([&](const auto& shape) { return sample(shape, from, u); }, light);
 }
 
 Float light_pdf(const LightShape& light, Vec3 from, Vec3 wi, Vec3 position, Vec3 normal) {
@@ -99,13 +104,7 @@ Float light_pdf(const LightShape& light, Vec3 from, Vec3 wi, Vec3 position, Vec3
 }
 
 double light_area(const LightShape& light) {
-  if (const auto* sphere = std::get_if<Sphere>(&light)) {
-    return 4 * double(kPi) * sphere->radius * sphere->radius;
-  }
-  if (const auto* quad = std::get_if<Quad>(&light)) {
-    return length(quad->scaled_normal());
-  }
-  return length(scaled_normal(std::get<TriangleLight>(light)));
+  return std::visit([](const auto& shape) { return area(shape); }, light);
 }
 
 }  // namespace spectrace

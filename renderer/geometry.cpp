@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/geometry.h"
 
-#include <type_traits>
+#include "core/base/overloaded.h"
 
 namespace spectrace {
 
@@ -22,20 +22,21 @@ void Box::add(Vec3 p) {
 
 Box bounds(const Shape& shape) {
   Box box;
-  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-    const Vec3 r{sphere->radius, sphere->radius, sphere->radius};
-    box.add(sphere->center - r);
-    box.add(sphere->center + r);
-  } else if (const auto* quad = std::get_if<Quad>(&shape.geometry)) {
-    box.add(quad->corner);
-    box.add(quad->corner + quad->edge_u);
-    box.add(quad->corner + quad->edge_v);
-    box.add(quad->corner + quad->edge_u + quad->edge_v);
-  } else {
-    for (Vec3 p : std::get<TriangleMesh>(shape.geometry).positions) {
-      box.add(p);
-    }
-  }
+  std::visit(Overloaded{[&](const Sphere& sphere) {
+                          const Vec3 r{sphere.radius, sphere.radius, sphere.radius};
+                          box.add(sphere.center - r);
+                          box.add(sphere.center + r);
+                        },
+                        [&](const Quad& quad) {
+                          box.add(quad.corner);
+                          box.add(quad.corner + quad.edge_u);
+                          box.add(quad.corner + quad.edge_v);
+                          box.add(quad.corner + quad.edge_u + quad.edge_v);
+                        },
+                        [&](const TriangleMesh& mesh) {
+                          for (Vec3 p : mesh.positions) box.add(p);
+                        }},
+             shape.geometry);
   return box;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
+#include "core/base/overloaded.h"
 #include "core/math/math.h"
 
 namespace spectrace {
@@ -24,6 +25,20 @@ double mean_over(const WavelengthDistribution& wavelengths, const std::function<
 
 double mean_of(const WavelengthDistribution& wavelengths, const Spectrum& spectrum) {
   return mean_over(wavelengths, [&](Float nm) { return double(spectrum.at(nm)); });
+}
+
+std::optional<LightSample> sample_one(const PointLight& point, Vec3 from, const SampledWavelengths& lambda) {
+  const Vec3 way = point.position - from;
+  const Float distance_squared = length_squared(way);
+  if (!(distance_squared > 0)) {
+    return std::nullopt;
+  }
+  return LightSample{way / std::sqrt(distance_squared), point.position,
+                     point.intensity.sample(lambda) / distance_squared, 1};
+}
+
+std::optional<LightSample> sample_one(const DirectionalLight& sun, Vec3, const SampledWavelengths& lambda) {
+  return LightSample{sun.to_light, std::nullopt, sun.irradiance.sample(lambda), 1};
 }
 
 /// One thing that lights: some consecutive lights and their powers.
@@ -97,10 +112,13 @@ Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& gr
 }
 
 double Lights::power_of(const DeltaLight& light, double lambda_nm) const {
-  if (const auto* point = std::get_if<PointLight>(&light)) {
-    return 4 * kPi64 * double(point->intensity.at(Float(lambda_nm)));
-  }
-  return scene_disk_ * double(std::get<DirectionalLight>(light).irradiance.at(Float(lambda_nm)));
+  return std::visit(Overloaded{[&](const PointLight& point) {
+                                 return 4 * kPi64 * double(point.intensity.at(Float(lambda_nm)));
+                               },
+                               [&](const DirectionalLight& sun) {
+                                 return scene_disk_ * double(sun.irradiance.at(Float(lambda_nm)));
+                               }},
+                    light);
 }
 
 double Lights::power_of_environment(double lambda_nm) const {
@@ -140,18 +158,8 @@ std::optional<LightSample> Lights::sample_area(std::uint32_t light, Vec3 from, V
 
 std::optional<LightSample> Lights::sample_delta(std::uint32_t light, Vec3 from,
                                                 const SampledWavelengths& lambda) const {
-  const DeltaLight& delta = delta_[light - area_.size()];
-  if (const auto* sun = std::get_if<DirectionalLight>(&delta)) {
-    return LightSample{sun->to_light, std::nullopt, sun->irradiance.sample(lambda), 1};
-  }
-  const auto& point = std::get<PointLight>(delta);
-  const Vec3 way = point.position - from;
-  const Float distance_squared = length_squared(way);
-  if (!(distance_squared > 0)) {
-    return std::nullopt;
-  }
-  return LightSample{way / std::sqrt(distance_squared), point.position,
-                     point.intensity.sample(lambda) / distance_squared, 1};
+  return std::visit([&](const auto& delta) { return sample_one(delta, from, lambda); },
+                    delta_[light - area_.size()]);
 }
 
 std::optional<LightSample> Lights::sample_environment(Vec2 u, const SampledWavelengths& lambda) const {

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/overloaded.h"
 #include "materials/measured_albedo.h"
 #include "renderer/scene_shapes.h"
 
@@ -97,19 +98,21 @@ DistantLights build_lights(const SceneDesc& scene) {
     const auto fail = [&](const char* problem) {
       throw InputError(scene.file_name, fmt::format("/lights/{}", i), problem);
     };
-    const LightDesc& light = scene.lights[i];
-    if (const auto* point = std::get_if<PointLightDesc>(&light)) {
-      result.delta.emplace_back(PointLight{point->position, point->intensity});
-    } else if (const auto* sun = std::get_if<DirectionalLightDesc>(&light)) {
-      if (!(length_squared(sun->direction) > 0)) {
-        fail("the direction of a directional light must not be zero");
-      }
-      result.delta.emplace_back(DirectionalLight{-normalize(sun->direction), sun->irradiance});
-    } else if (result.environment) {
-      fail("a scene has at most one environment");
-    } else {
-      result.environment = build_environment(std::get<EnvironmentDesc>(light));
-    }
+    std::visit(
+        Overloaded{[&](const PointLightDesc& point) {
+                     result.delta.emplace_back(PointLight{point.position, point.intensity});
+                   },
+                   [&](const DirectionalLightDesc& sun) {
+                     if (!(length_squared(sun.direction) > 0)) {
+                       fail("the direction of a directional light must not be zero");
+                     }
+                     result.delta.emplace_back(DirectionalLight{-normalize(sun.direction), sun.irradiance});
+                   },
+                   [&](const EnvironmentDesc& environment) {
+                     if (result.environment) fail("a scene has at most one environment");
+                     result.environment = build_environment(environment);
+                   }},
+        scene.lights[i]);
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/overloaded.h"
 #include "core/math/math.h"
 #include "renderer/mesh.h"
 
@@ -112,29 +113,26 @@ void ShapeBuilder::add_lights(Shape& shape, const Spectrum& emission) {
   shape.first_light = std::uint32_t(area_lights.size());
   const auto index = std::uint32_t(emissions.size());
   emissions.push_back(emission);
-  if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-    for (const auto& [a, b, c] : mesh->triangles) {
-      const Vec3 p0 = mesh->positions[a];
-      area_lights.push_back({TriangleLight{p0, mesh->positions[b] - p0, mesh->positions[c] - p0}, index});
-    }
-  } else if (const auto* quad = std::get_if<Quad>(&shape.geometry)) {
-    area_lights.push_back({*quad, index});
-  } else {
-    area_lights.push_back({std::get<Sphere>(shape.geometry), index});
-  }
+  std::visit(Overloaded{[&](const TriangleMesh& mesh) {
+                          for (const auto& [a, b, c] : mesh.triangles) {
+                            const Vec3 p0 = mesh.positions[a];
+                            area_lights.push_back(
+                                {TriangleLight{p0, mesh.positions[b] - p0, mesh.positions[c] - p0}, index});
+                          }
+                        },
+                        [&](const auto& whole) {
+                          area_lights.push_back({LightShape(whole), index});
+                        }},
+             shape.geometry);
   light_groups.push_back(std::uint32_t(area_lights.size()) - shape.first_light);
 }
 
 void ShapeBuilder::add_shape(const ShapeDesc& shape) {
   const std::uint32_t material = material_index(shape);
-  std::optional<Shape> made;
-  if (const auto* sphere = std::get_if<SphereDesc>(&shape.kind)) {
-    made = make(shape, *sphere);
-  } else if (const auto* quad = std::get_if<QuadDesc>(&shape.kind)) {
-    made = make(shape, *quad);
-  } else {
-    made = make(shape, std::get<MeshDesc>(shape.kind));
-  }
+  std::optional<Shape> made =
+      std::visit(Overloaded{[](const InstanceDesc&) { return std::optional<Shape>(); },  // add_instance()
+                            [&](const auto& kind) { return make(shape, kind); }},
+                 shape.kind);
   if (!made) {
     return;
   }

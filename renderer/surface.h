@@ -161,9 +161,10 @@ SurfacePoint surface_point(const Geometry& geometry, const Ray& ray, const Inter
     point = detail::sphere_point(*sphere, local, hit.t, kQuery.uv);
   } else if (const auto* quad = std::get_if<Quad>(&shape.geometry)) {
     point = detail::quad_point(*quad, hit.u, hit.v);
+  } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+    point = detail::triangle_point(*mesh, hit.primitive, hit.u, hit.v, kQuery.uv);
   } else {
-    point = detail::triangle_point(std::get<TriangleMesh>(shape.geometry), hit.primitive, hit.u, hit.v,
-                                   kQuery.uv);
+    static_assert(std::variant_size_v<decltype(Shape::geometry)> == 3, "a kind of shape without its point");
   }
   if (instance != nullptr) {
     detail::move_to_world(*instance, point);
