@@ -97,19 +97,24 @@ TypeAndDetail type_and_detail(const MaterialDesc& material) {
 }
 
 std::vector<InspectCell> describe(const LightDesc& light) {
-  return std::visit(Overloaded{[](const PointLightDesc& p) -> std::vector<InspectCell> {
-                                 return {std::string("point"), "at " + text_of(p.position)};
-                               },
-                               [](const DirectionalLightDesc& d) -> std::vector<InspectCell> {
-                                 return {std::string("directional"), "towards " + text_of(d.direction)};
-                               },
-                               [](const EnvironmentDesc& e) -> std::vector<InspectCell> {
-                                 return {std::string("environment"),
-                                         e.file.empty()
-                                             ? std::string("constant")
-                                             : fmt::format("{}, scale {}", e.file.string(), e.scale)};
-                               }},
-                    light);
+  return std::visit(
+      Overloaded{[](const PointLightDesc& p) -> std::vector<InspectCell> {
+                   return {std::string("point"), "at " + text_of(p.position)};
+                 },
+                 [](const SpotLightDesc& s) -> std::vector<InspectCell> {
+                   return {std::string("spot"),
+                           fmt::format("at {} towards {}, full to {} degrees, dark from {}",
+                                       text_of(s.position), text_of(s.direction), s.falloff_deg, s.cone_deg)};
+                 },
+                 [](const DirectionalLightDesc& d) -> std::vector<InspectCell> {
+                   return {std::string("directional"), "towards " + text_of(d.direction)};
+                 },
+                 [](const EnvironmentDesc& e) -> std::vector<InspectCell> {
+                   return {std::string("environment"),
+                           e.file.empty() ? std::string("constant")
+                                          : fmt::format("{}, scale {}", e.file.string(), e.scale)};
+                 }},
+      light);
 }
 
 struct ShapeCounts {

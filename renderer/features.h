@@ -17,7 +17,7 @@ struct Features {
   bool depth_of_field = false;
   bool indirect = false;  ///< more than one bounce
   bool area_lights = false;
-  bool delta_lights = false;  ///< point and directional
+  bool delta_lights = false;  ///< point, spot and directional
   bool environment = false;
   bool delta_lobes = false;  ///< mirrors and smooth glass
   bool transmission = false;
@@ -40,7 +40,7 @@ struct FeatureInfo {
 inline constexpr std::array<FeatureInfo, 13> kFeatureInfos{{
     {&Features::indirect, "indirect light", "max_depth is at most 1"},
     {&Features::area_lights, "area lights", "no shape emits"},
-    {&Features::delta_lights, "point and directional lights", "none in the scene"},
+    {&Features::delta_lights, "point, spot and directional lights", "none in the scene"},
     {&Features::environment, "environment", "none in the scene"},
     {&Features::delta_lobes, "mirrors and smooth glass", "no such material"},
     {&Features::transmission, "transmission", "no transmitting material"},

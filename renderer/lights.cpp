@@ -27,14 +27,27 @@ double mean_of(const WavelengthDistribution& wavelengths, const Spectrum& spectr
   return mean_over(wavelengths, [&](Float nm) { return double(spectrum.at(nm)); });
 }
 
-std::optional<LightSample> sample_one(const PointLight& point, Vec3 from, const SampledWavelengths& lambda) {
-  const Vec3 way = point.position - from;
+std::optional<LightSample> sample_point(Vec3 position, const Spectrum& intensity, Vec3 from,
+                                        const SampledWavelengths& lambda) {
+  const Vec3 way = position - from;
   const Float distance_squared = length_squared(way);
   if (!(distance_squared > 0)) {
     return std::nullopt;
   }
-  return LightSample{way / std::sqrt(distance_squared), point.position,
-                     point.intensity.sample(lambda) / distance_squared, 1};
+  return LightSample{way / std::sqrt(distance_squared), position, intensity.sample(lambda) / distance_squared,
+                     1};
+}
+
+std::optional<LightSample> sample_one(const PointLight& point, Vec3 from, const SampledWavelengths& lambda) {
+  return sample_point(point.position, point.intensity, from, lambda);
+}
+
+std::optional<LightSample> sample_one(const SpotLight& spot, Vec3 from, const SampledWavelengths& lambda) {
+  std::optional<LightSample> sample = sample_point(spot.position, spot.intensity, from, lambda);
+  if (sample) {
+    sample->radiance *= spot.share_towards(-sample->wi);
+  }
+  return sample;
 }
 
 std::optional<LightSample> sample_one(const DirectionalLight& sun, Vec3, const SampledWavelengths& lambda) {
@@ -114,6 +127,11 @@ Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& gr
 double Lights::power_of(const DeltaLight& light, double lambda_nm) const {
   return std::visit(Overloaded{[&](const PointLight& point) {
                                  return 4 * kPi64 * double(point.intensity.at(Float(lambda_nm)));
+                               },
+                               [&](const SpotLight& spot) {
+                                 // Smoothstep is 1/2 on average: ∫ over the sphere of share_towards().
+                                 const double drop = (double(spot.full_drop) + double(spot.no_drop)) / 2;
+                                 return 2 * kPi64 * drop * double(spot.intensity.at(Float(lambda_nm)));
                                },
                                [&](const DirectionalLight& sun) {
                                  return scene_disk_ * double(sun.irradiance.at(Float(lambda_nm)));

@@ -16,11 +16,29 @@ struct PointLight {
   Vec3 position;
   Spectrum intensity;  ///< [W·sr⁻¹·nm⁻¹]
 };
+/// Full intensity up to an angle from the axis, none beyond a larger one, between them the cubic smoothstep
+/// in the cosine that pbrt-v4 has (Pharr, Jakob, Humphreys 2023, sec. 12.2.1).
+struct SpotLight {
+  Vec3 position;
+  Vec3 axis;                 ///< unit, away from the light
+  Spectrum intensity;        ///< on the axis [W·sr⁻¹·nm⁻¹]
+  Float full_drop, no_drop;  ///< 1 - cosine of the two angles, 0 <= full_drop <= no_drop
+
+  /// In [0, 1]; `way` is unit, away from the light.
+  [[nodiscard]] Float share_towards(Vec3 way) const {
+    // |a - b|² / 2 is 1 - cosine without cancellation: cones may be narrower than a degree.
+    const Float drop = length_squared(way - axis) / 2;
+    if (drop <= full_drop) return 1;
+    if (drop >= no_drop) return 0;
+    const Float t = (no_drop - drop) / (no_drop - full_drop);
+    return t * t * (3 - 2 * t);
+  }
+};
 struct DirectionalLight {
   Vec3 to_light;        ///< unit
   Spectrum irradiance;  ///< [W·m⁻²·nm⁻¹] on a surface facing it
 };
-using DeltaLight = std::variant<PointLight, DirectionalLight>;
+using DeltaLight = std::variant<PointLight, SpotLight, DirectionalLight>;
 
 /// Radiance arriving at a point from one light; divide by `pdf`.
 struct LightSample {

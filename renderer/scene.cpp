@@ -87,6 +87,22 @@ Environment build_environment(const EnvironmentDesc& light) {
                             : Environment(read_image(light.file), light.file, radiance, light.to_world);
 }
 
+/// 1 - cosine, in double: exact for narrow cones.
+Float cosine_drop(Float angle_deg) { return Float(2 * sqr(std::sin(double(angle_deg) * kPi64 / 360))); }
+
+template <typename Fail>
+SpotLight build_spot(const SpotLightDesc& spot, const Fail& fail) {
+  if (!(length_squared(spot.direction) > 0)) {
+    fail("the direction of a spot light must not be zero");
+  }
+  if (!(spot.cone_deg > 0 && spot.cone_deg <= 180 && spot.falloff_deg >= 0 &&
+        spot.falloff_deg <= spot.cone_deg)) {
+    fail("a spot light's cone must lie in (0, 180] degrees, its falloff within the cone");
+  }
+  return {spot.position, normalize(spot.direction), spot.intensity, cosine_drop(spot.falloff_deg),
+          cosine_drop(spot.cone_deg)};
+}
+
 struct DistantLights {
   std::vector<DeltaLight> delta;
   std::optional<Environment> environment;
@@ -102,6 +118,7 @@ DistantLights build_lights(const SceneDesc& scene) {
         Overloaded{[&](const PointLightDesc& point) {
                      result.delta.emplace_back(PointLight{point.position, point.intensity});
                    },
+                   [&](const SpotLightDesc& spot) { result.delta.emplace_back(build_spot(spot, fail)); },
                    [&](const DirectionalLightDesc& sun) {
                      if (!(length_squared(sun.direction) > 0)) {
                        fail("the direction of a directional light must not be zero");

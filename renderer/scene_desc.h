@@ -79,6 +79,13 @@ struct PointLightDesc {
   Vec3 position{};
   Spectrum intensity;  ///< [W·sr⁻¹·nm⁻¹]
 };
+struct SpotLightDesc {
+  Vec3 position{};
+  Vec3 direction{0, 0, -1};   ///< of the cone's axis, away from the light; unit
+  Spectrum intensity;         ///< along the axis [W·sr⁻¹·nm⁻¹]
+  Float cone_deg = 30;        ///< from the axis to where it is dark, in (0, 180]
+  Float falloff_deg = 22.5F;  ///< from the axis to where it begins to fade, in [0, cone_deg]
+};
 struct DirectionalLightDesc {
   Vec3 direction{0, 0, -1};  ///< the way the light travels; unit
   Spectrum irradiance;       ///< [W·m⁻²·nm⁻¹] on a surface facing it
@@ -89,7 +96,7 @@ struct EnvironmentDesc {         ///< constant radiance, or a latitude-longitude
   Float scale = 1;
   Transform to_world{};  ///< rotation; the image's up is +z
 };
-using LightDesc = std::variant<PointLightDesc, DirectionalLightDesc, EnvironmentDesc>;
+using LightDesc = std::variant<PointLightDesc, SpotLightDesc, DirectionalLightDesc, EnvironmentDesc>;
 
 struct SceneDesc {
   std::string file_name;

@@ -36,10 +36,42 @@ EnvironmentDesc parse_environment(const JsonValue& json) {
   return light;
 }
 
+/// The axis: a direction, or towards a target.
+Vec3 parse_axis(const JsonValue& json, Vec3 position, Vec3 fallback) {
+  const JsonValue direction = json.get("direction"), target = json.get("target");
+  if (direction.exists() == target.exists()) {
+    json.error("a spot light needs a \"direction\" or a \"target\", and not both");
+    return fallback;
+  }
+  if (direction.exists()) return normalize(parse_nonzero(direction, fallback));
+  const Vec3 at = target.vec3(position + fallback);
+  if (at == position) {
+    target.error("is the same point as the position: the light shines nowhere");
+    return fallback;
+  }
+  return normalize(at - position);
+}
+
+SpotLightDesc parse_spot(const JsonValue& json) {
+  SpotLightDesc spot;
+  spot.position = json.require("position").vec3({});
+  spot.direction = parse_axis(json, spot.position, spot.direction);
+  spot.intensity = parse_spectrum(json.require("intensity"), SpectrumRole::kEmission);
+  const NumberRange cone{.min = 0, .max = 180, .min_open = true};
+  spot.cone_deg = static_cast<Float>(json.require("cone_deg").number(spot.cone_deg, cone));
+  const JsonValue falloff = json.get("falloff_deg");
+  // Where a beam begins to fade when nothing is said: as in Mitsuba, whose beam_width is 3/4 of its cutoff.
+  spot.falloff_deg = static_cast<Float>(falloff.number(spot.cone_deg * Float(0.75), {.min = 0, .max = 180}));
+  if (spot.falloff_deg > spot.cone_deg) {
+    falloff.error("must not exceed cone_deg: the light fades between the two angles");
+  }
+  return spot;
+}
+
 }  // namespace
 
 LightDesc parse_light(const JsonValue& json) {
-  const std::string type = json.require("type").choice("", {"environment", "point", "directional"});
+  const std::string type = json.require("type").choice("", {"environment", "point", "spot", "directional"});
   if (type.empty()) {
     return PointLightDesc{};  // recorded; without a type no key is known or unknown
   }
@@ -51,6 +83,8 @@ LightDesc parse_light(const JsonValue& json) {
     point.position = json.require("position").vec3({});
     point.intensity = parse_spectrum(json.require("intensity"), SpectrumRole::kEmission);
     light = point;
+  } else if (type == "spot") {
+    light = parse_spot(json);
   } else {
     DirectionalLightDesc directional;
     directional.direction = normalize(parse_nonzero(json.require("direction"), directional.direction));

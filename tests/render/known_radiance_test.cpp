@@ -92,6 +92,28 @@ TEST(KnownRadiance, FloorUnderDirectionalLight) {
   expect_y(render_scene(scene, 64).image, 0.5 / kPi64 * 20 * 3 / 5);
 }
 
+TEST(KnownRadiance, FloorUnderASpotLight) {
+  SceneDesc scene = floor_scene();
+  SpotLightDesc spot{.position = {0, 4, 3},
+                     .direction = normalize({0, -4, -3}),
+                     .intensity = Spectrum::constant(20),
+                     .cone_deg = 10,
+                     .falloff_deg = 5};
+  const double full = 0.5 / kPi64 * 20 * (3.0 / 5) / 25;
+  const auto rendered = [&] {
+    scene.lights = {spot};
+    return render_scene(scene, 64).image;
+  };
+  expect_y(rendered(), full);
+  // Where the cosine lies midway between those of the two angles, half of it is left.
+  const double middle = std::acos((std::cos(5 * kPi64 / 180) + std::cos(10 * kPi64 / 180)) / 2);
+  const double turned = std::atan2(3.0, 4.0) + middle;
+  spot.direction = {0, Float(-std::cos(turned)), Float(-std::sin(turned))};
+  expect_y(rendered(), full / 2);
+  spot.direction = normalize({0, -4, -1});  // 23 degrees off
+  EXPECT_EQ(estimate_y(rendered()).mean, 0);
+}
+
 TEST(KnownRadiance, AFloorAboveTheLightsIsDark) {
   SceneDesc scene = floor_scene();
   scene.lights = {PointLightDesc{{0, 0, -3}, Spectrum::constant(20)},

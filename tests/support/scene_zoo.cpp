@@ -146,8 +146,10 @@ std::vector<NamedScene> scene_zoo() {
                    .where = "",
                    .kind = Lambert{Texture(Checkerboard{Spectrum::constant(Float(0.2)),
                                                         Spectrum::constant(Float(0.8)), 16, 16})}})});
-  zoo.back().scene.lights = {PointLightDesc{{2, -2, 3}, Spectrum::constant(20)},
-                             DirectionalLightDesc{normalize({1, 1, -1}), Spectrum::constant(1)}};
+  zoo.back().scene.lights = {
+      PointLightDesc{{2, -2, 3}, Spectrum::constant(20)},
+      SpotLightDesc{{-2, -3, 4}, normalize({2, 3, -3}), Spectrum::constant(30), 20, 10},
+      DirectionalLightDesc{normalize({1, 1, -1}), Spectrum::constant(1)}};
   zoo.push_back({"mirror", ball_scene(mirror("ball"), glossy("floor", Spectrum::constant(Float(0.5))))});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.back().scene.lights = {sky(Float(0.3))};

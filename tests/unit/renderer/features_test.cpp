@@ -67,7 +67,7 @@ TEST(Features, EveryEffectIsListedOnceWithItsReason) {
   const EffectList list = list_effects(features_of("box"), choose_kernel(features_of("box")).features);
   EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size());
   EXPECT_EQ(list.used, (std::vector<std::string>{"indirect light", "area lights", "layers by lobe"}));
-  EXPECT_EQ(list.skipped[0], "point and directional lights: none in the scene");
+  EXPECT_EQ(list.skipped[0], "point, spot and directional lights: none in the scene");
 }
 
 }  // namespace

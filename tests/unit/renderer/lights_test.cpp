@@ -127,6 +127,65 @@ TEST(Lights, ChoiceFavoursPowerAndStarvesNone) {
   EXPECT_EQ(count[2], 0);
 }
 
+double drop_at(double angle_deg) { return 1 - std::cos(angle_deg * kPi64 / 180); }
+SpotLight spot_light(double full_deg, double dark_deg) {
+  return {{0, 0, 2}, {0, 0, -1}, Spectrum::constant(3), Float(drop_at(full_deg)), Float(drop_at(dark_deg))};
+}
+Vec3 below(double angle_deg) {
+  const double angle = angle_deg * kPi64 / 180;
+  return {Float(std::sin(angle)), 0, Float(-std::cos(angle))};
+}
+
+TEST(SpotLight, FadesFromItsFalloffToItsCone) {
+  const SpotLight spot = spot_light(20, 30);
+  for (double angle : {0.0, 10.0, 19.99}) EXPECT_EQ(spot.share_towards(below(angle)), 1) << angle;
+  for (double angle : {30.01, 60.0, 180.0}) EXPECT_EQ(spot.share_towards(below(angle)), 0) << angle;
+  for (double angle : {21.0, 24.0, 27.5}) {
+    const double t = (drop_at(30) - drop_at(angle)) / (drop_at(30) - drop_at(20));
+    EXPECT_NEAR(spot.share_towards(below(angle)), 3 * t * t - 2 * t * t * t, 1e-5) << angle;
+  }
+  const double middle = std::acos((std::cos(20 * kPi64 / 180) + std::cos(30 * kPi64 / 180)) / 2);
+  EXPECT_NEAR(spot.share_towards(below(middle * 180 / kPi64)), 0.5, 1e-5);
+}
+
+TEST(SpotLight, MayBeNarrowOrHaveAHardEdge) {
+  // A hundredth of a degree: 1 - cosine is 1.5e-8, less than a rounding step of the cosine itself.
+  const SpotLight narrow = spot_light(0.005, 0.01);
+  EXPECT_EQ(narrow.share_towards(below(0.0049)), 1);
+  EXPECT_EQ(narrow.share_towards(below(0.0101)), 0);
+  const double t = (1 - 0.75 * 0.75) / (1 - 0.25);
+  EXPECT_NEAR(narrow.share_towards(below(0.0075)), 3 * t * t - 2 * t * t * t, 1e-3);
+  const SpotLight hard = spot_light(25, 25);
+  EXPECT_EQ(hard.share_towards(below(24.999)), 1);
+  EXPECT_EQ(hard.share_towards(below(25.001)), 0);
+}
+
+TEST(SpotLight, PowerIsTheIntegralOfItsIntensity) {
+  for (const auto& [full, dark] : {std::pair{20.0, 30.0}, {0.0, 180.0}, {70.0, 100.0}}) {
+    const SpotLight spot = spot_light(full, dark);
+    double integral = 0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double z = 1 - 2 * (i + 0.5) / kSteps;
+      const Vec3 way{Float(std::sqrt(1 - z * z)), 0, Float(z)};
+      integral += 4 * kPi64 / kSteps * 3 * double(spot.share_towards(way));
+    }
+    const Lights lights({}, {}, {}, {spot}, std::nullopt, WavelengthDistribution::uniform({}), 1);
+    EXPECT_NEAR(lights.power(550) / integral, 1, 1e-3) << full << ' ' << dark;
+  }
+}
+
+TEST(SpotLight, LightsAPointWithItsIntensityByDistanceSquared) {
+  const Lights lights({}, {}, {}, {spot_light(20, 30)}, std::nullopt, WavelengthDistribution::uniform({}), 1);
+  const SampledWavelengths lambda = WavelengthDistribution::uniform({}).sample(Float(0.2));
+  const auto centre = lights.sample_delta(0, {0, 0, -1}, lambda);
+  ASSERT_TRUE(centre);
+  EXPECT_NEAR(centre->radiance[0], 3 / 9.0, 1e-6);
+  EXPECT_NEAR(centre->wi.z, 1, 1e-6);
+  EXPECT_TRUE(lights.sample_delta(0, {2, 0, 0}, lambda)->radiance.is_zero());  // 45 degrees off the axis
+  EXPECT_FALSE(lights.sample_delta(0, {0, 0, 2}, lambda));                     // at the light itself
+}
+
 TEST(Lights, NoneMeansNoChoice) { EXPECT_FALSE(Lights().choose(Float(0.5))); }
 
 TEST(GridDensity, SamplesAsItsPdfSays) {

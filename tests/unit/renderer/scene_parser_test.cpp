@@ -193,7 +193,8 @@ TEST(SceneParser, NamesFilesThatAreNotThere) {
                  "/shapes/0/file: there is no file \"" + (kScenes / "meshes/tours.obj").string() + "\"");
   expect_problem(R"("lights": [{"type": "environment", "file": "sky.hdr"}])",
                  "/lights/0/file: there is no file");
-  expect_problem(R"("shapes": [{"type": "mesh", "material": "clay", "file": "meshes"}])", "is a folder, not a file");
+  expect_problem(R"("shapes": [{"type": "mesh", "material": "clay", "file": "meshes"}])",
+                 "is a folder, not a file");
   EXPECT_EQ(problems(R"({"camera": {"origin": [0, 0, 1], "target": [0, 0, 0]},
                          "materials": [{"name": "m", "type": "measured", "file": "none.bsdf"}]})"),
             std::vector<std::string>{"2:82: /materials/0/file: there is no file \"" +
@@ -282,6 +283,22 @@ TEST(SceneParser, LightsAreWhole) {
   }
   expect_problem(R"("lights": [{"type": "directional", "direction": [0, 0, 0], "irradiance": 1}])",
                  "/lights/0/direction: expected a vector that is not zero");
+  expect_problem(R"("lights": [{"type": "spot", "position": [0, 0, 0], "intensity": 1, "cone_deg": 20}])",
+                 "/lights/0: a spot light needs a \"direction\" or a \"target\"");
+  const auto spot = [](const std::string& rest) {
+    return R"("lights": [{"type": "spot", "position": [0, 0, 1], "intensity": 1, )" + rest + "}]";
+  };
+  expect_problem(spot(R"("cone_deg": 20, "direction": [0, 0, 1], "target": [0, 0, 0])"), "and not both");
+  expect_problem(spot(R"("cone_deg": 20, "target": [0, 0, 1])"),
+                 "/lights/0/target: is the same point as the position");
+  expect_problem(spot(R"("cone_deg": 0, "target": [0, 0, 0])"),
+                 "/lights/0/cone_deg: expected a number in (0, 180], got 0");
+  expect_problem(spot(R"("cone_deg": 20, "falloff_deg": 21, "target": [0, 0, 0])"),
+                 "/lights/0/falloff_deg: must not exceed cone_deg");
+  const auto lamp = std::get<SpotLightDesc>(
+      parse(scene_with(spot(R"("cone_deg": 20, "target": [0, 0, -4])"))).lights.at(0));
+  EXPECT_EQ(lamp.direction, (Vec3{0, 0, -1}));
+  EXPECT_EQ(lamp.falloff_deg, Float(15));
   const SceneDesc scene = parse(scene_with(R"("lights": [{"type": "environment", "radiance": 1, "transform":
       [{"rotate": {"axis": [1, 0, 0], "angle_deg": 90}}, {"rotate": {"axis": [1, 2, 3], "angle_deg": 77}}]}])"));
   EXPECT_EQ(scene.lights.size(), 1U);

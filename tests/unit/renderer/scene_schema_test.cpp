@@ -128,6 +128,8 @@ Json everything() {
       {"type": "environment", "radiance": {"illuminant": "D65", "scale": 0.5}, "scale": 2,
        "transform": {"rotate": {"axis": [0, 0, 1], "angle_deg": 90}}},
       {"type": "point", "position": [1, 1, 1], "intensity": {"rgb": [1, 2, 3]}},
+      {"type": "spot", "position": [1, 1, 3], "target": [0, 0, 0], "intensity": 3, "cone_deg": 20, "falloff_deg": 15},
+      {"type": "spot", "position": [1, 1, 3], "direction": [0, 0, -1], "intensity": 3, "cone_deg": 20},
       {"type": "directional", "direction": [0, 0, -1], "irradiance": {"wavelengths_nm": [400, 500], "values": [0, 1]}}]
   })json");
   for (Json& material : scene["materials"]) {
@@ -147,6 +149,7 @@ bool is_beyond_schema(const std::string& problem) {
       "can be inverted",
       "can only be rotated",
       "a second environment",
+      "must not exceed cone_deg",
       "nm apart, min first",
       "is visible",
       "pixels: more than",
