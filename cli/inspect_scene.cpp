@@ -118,15 +118,16 @@ std::vector<InspectCell> describe(const LightDesc& light) {
 }
 
 struct ShapeCounts {
-  std::size_t spheres = 0, quads = 0, meshes = 0, instances = 0, emitters = 0;
+  std::size_t spheres = 0, quads = 0, disks = 0, meshes = 0, instances = 0, emitters = 0;
 };
 
 void count_shapes(const std::vector<ShapeDesc>& shapes, ShapeCounts& counts) {
   for (const ShapeDesc& shape : shapes) {
-    std::visit(Overloaded{[&](const SphereDesc&) { ++counts.spheres; },
-                          [&](const QuadDesc&) { ++counts.quads; }, [&](const MeshDesc&) { ++counts.meshes; },
-                          [&](const InstanceDesc&) { ++counts.instances; }},
-               shape.kind);
+    std::visit(
+        Overloaded{[&](const SphereDesc&) { ++counts.spheres; }, [&](const QuadDesc&) { ++counts.quads; },
+                   [&](const DiskDesc&) { ++counts.disks; }, [&](const MeshDesc&) { ++counts.meshes; },
+                   [&](const InstanceDesc&) { ++counts.instances; }},
+        shape.kind);
     counts.emitters += shape.emission ? 1 : 0;
   }
 }
@@ -167,6 +168,7 @@ InspectReport inspect_scene(const std::filesystem::path& file) {
   shapes.title = "shapes";
   shapes.add("spheres", counts.spheres);
   shapes.add("quads", counts.quads);
+  shapes.add("disks", counts.disks);
   shapes.add("meshes", counts.meshes);
   shapes.add("instances", counts.instances);
   shapes.add("groups", scene.groups.size());

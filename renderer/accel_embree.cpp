@@ -92,6 +92,52 @@ void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
+void disk_bounds(const RTCBoundsFunctionArguments* args) {
+  const Disk& disk = *static_cast<const Disk*>(args->geometryUserPtr);
+  const Vec3 half = disk.half_extent();
+  // Some rounding steps, as around spheres.
+  const float margin = 4 * 0x1p-24F * float(largest_coordinate(disk));
+  RTCBounds& b = *args->bounds_o;
+  b.lower_x = float(disk.center.x - half.x) - margin;
+  b.lower_y = float(disk.center.y - half.y) - margin;
+  b.lower_z = float(disk.center.z - half.z) - margin;
+  b.upper_x = float(disk.center.x + half.x) + margin;
+  b.upper_y = float(disk.center.y + half.y) + margin;
+  b.upper_z = float(disk.center.z + half.z) + margin;
+}
+
+std::optional<DiskCrossing> disk_hit(const RTCRay& r, const Disk& disk) {
+  const Ray ray{{Float(r.org_x), Float(r.org_y), Float(r.org_z)},
+                {Float(r.dir_x), Float(r.dir_y), Float(r.dir_z)}};
+  const std::optional<DiskCrossing> crossing = intersect_disk(disk, ray);
+  return crossing && crossing->t > double(r.tnear) && crossing->t < double(r.tfar) ? crossing : std::nullopt;
+}
+
+void disk_intersect(const RTCIntersectFunctionNArguments* args) {
+  if (args->valid[0] == 0) {
+    return;
+  }
+  auto* rayhit = reinterpret_cast<RTCRayHit*>(args->rayhit);
+  if (const auto hit = disk_hit(rayhit->ray, *static_cast<const Disk*>(args->geometryUserPtr))) {
+    rayhit->ray.tfar = float(hit->t);
+    rayhit->hit.u = float(hit->x);
+    rayhit->hit.v = float(hit->y);
+    rayhit->hit.geomID = args->geomID;
+    rayhit->hit.primID = args->primID;
+    rayhit->hit.instID[0] = args->context->instID[0];
+  }
+}
+
+void disk_occluded(const RTCOccludedFunctionNArguments* args) {
+  if (args->valid[0] == 0) {
+    return;
+  }
+  auto* ray = reinterpret_cast<RTCRay*>(args->ray);
+  if (disk_hit(*ray, *static_cast<const Disk*>(args->geometryUserPtr))) {
+    ray->tfar = -std::numeric_limits<float>::infinity();
+  }
+}
+
 }  // namespace
 
 struct Accel::Impl {
@@ -99,6 +145,7 @@ struct Accel::Impl {
   RTCScene world = nullptr;
   std::vector<RTCScene> groups;
   std::vector<Sphere> spheres;  // never grows after the first sphere is attached
+  std::vector<Disk> disks;      // likewise
   // Embree numbers the geometries of each of its scenes from 0: the shape is base + number.
   std::uint32_t world_base = 0;
   std::vector<std::uint32_t> group_base;      // by group
@@ -178,6 +225,16 @@ struct Accel::Impl {
     rtcSetGeometryOccludedFunction(geometry, sphere_occluded);
     attach(scene, geometry, id);
   }
+  void attach_shape(RTCScene scene, const Disk& disk, std::uint32_t id) {
+    disks.push_back(disk);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, &disks.back());
+    rtcSetGeometryBoundsFunction(geometry, disk_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, disk_intersect);
+    rtcSetGeometryOccludedFunction(geometry, disk_occluded);
+    attach(scene, geometry, id);
+  }
   void attach_shapes(RTCScene scene, const Geometry& geometry, ShapeRange range) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
       const std::uint32_t id = i - range.begin;
@@ -205,6 +262,7 @@ Accel::Accel(const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
     throw InternalError("Embree offers no device on this machine");
   }
   impl_->spheres.reserve(geometry.shapes.size());
+  impl_->disks.reserve(geometry.shapes.size());
   for (const ShapeRange& range : geometry.groups) {
     RTCScene scene = impl_->new_scene();
     impl_->groups.push_back(scene);

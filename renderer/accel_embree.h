@@ -11,8 +11,9 @@ namespace spectrace {
 
 /// Where a ray met a primitive.
 struct Intersection {
-  Float t = 0;         ///< in units of the ray's direction
-  Float u = 0, v = 0;  ///< triangles: weights of vertices 1 and 2; quads: along edge_u and edge_v; spheres: 0
+  Float t = 0;  ///< in units of the ray's direction
+  Float u = 0,
+        v = 0;  ///< triangles: weights of vertices 1 and 2; quads, disks: along edge_u and edge_v; else 0
   std::uint32_t shape = 0;  ///< index into Geometry::shapes
   std::uint32_t primitive = 0;
   std::uint32_t instance = kNone;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/math/concentric_disk.h"
 #include "core/math/math.h"
 #include "renderer/surface.h"
 
@@ -72,6 +73,12 @@ std::optional<LightPoint> sample(const Quad& quad, Vec3 from, Vec2 u) {
                      largest_coordinate(quad), from);
 }
 
+std::optional<LightPoint> sample(const Disk& disk, Vec3 from, Vec2 u) {
+  const Vec2 on_disk = concentric_disk(u);
+  return sample_flat(disk.center + disk.edge_u * on_disk.x + disk.edge_v * on_disk.y, disk.scaled_normal(),
+                     largest_coordinate(disk), from);
+}
+
 std::optional<LightPoint> sample(const TriangleLight& triangle, Vec3 from, Vec2 u) {
   // Square to triangle, area preserving: Turk 1990.
   const Float root = std::sqrt(u.x);
@@ -82,6 +89,7 @@ std::optional<LightPoint> sample(const TriangleLight& triangle, Vec3 from, Vec2 
 
 double area(const Sphere& sphere) { return 4 * double(kPi) * sphere.radius * sphere.radius; }
 double area(const Quad& quad) { return length(quad.scaled_normal()); }
+double area(const Disk& disk) { return length(disk.scaled_normal()); }
 double area(const TriangleLight& triangle) { return length(scaled_normal(triangle)); }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Emitting spheres, quads and triangles: one point on them for a point to be lit, with its density.
+// Emitting spheres, quads, disks and triangles: one point on them for a point to be lit, with its density.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace spectrace {
 struct TriangleLight {
   Vec3 p0, edge_1, edge_2;  ///< front: edge_1 x edge_2
 };
-using LightShape = std::variant<Sphere, Quad, TriangleLight>;
+using LightShape = std::variant<Sphere, Quad, TriangleLight, Disk>;
 
 /// A point on a light as seen from another point.
 struct LightPoint {
@@ -22,7 +22,7 @@ struct LightPoint {
   Float pdf = 0;  ///< per solid angle [1/sr], > 0
 };
 
-/// Spheres: uniform over the cone they fill (Shirley et al. 1996). Quads, triangles: uniform over the area.
+/// Spheres: uniform over the cone they fill (Shirley et al. 1996). All others: uniform over the area.
 /// nullopt where `from` sees no front (behind, inside, edge-on). `u` in [0, 1]².
 [[nodiscard]] std::optional<LightPoint> sample_light(const LightShape& light, Vec3 from, Vec2 u);
 

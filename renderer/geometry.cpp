@@ -12,6 +12,9 @@ struct DoubleVec {
 };
 DoubleVec wide(Vec3 v) { return {v.x, v.y, v.z}; }
 double dot(DoubleVec a, DoubleVec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+DoubleVec cross(DoubleVec a, DoubleVec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 }  // namespace
 
@@ -32,6 +35,10 @@ Box bounds(const Shape& shape) {
                           box.add(quad.corner + quad.edge_u);
                           box.add(quad.corner + quad.edge_v);
                           box.add(quad.corner + quad.edge_u + quad.edge_v);
+                        },
+                        [&](const Disk& disk) {
+                          box.add(disk.center - disk.half_extent());
+                          box.add(disk.center + disk.half_extent());
                         },
                         [&](const TriangleMesh& mesh) {
                           for (Vec3 p : mesh.positions) box.add(p);
@@ -82,6 +89,24 @@ std::optional<SphereCrossings> intersect_sphere(const Sphere& sphere, const Ray&
   }
   const double half = std::sqrt(h2 / dd);
   return SphereCrossings{t_closest - half, t_closest + half};
+}
+
+std::optional<DiskCrossing> intersect_disk(const Disk& disk, const Ray& ray) {
+  const DoubleVec d = wide(ray.direction), o = wide(ray.origin), c = wide(disk.center);
+  const DoubleVec u = wide(disk.edge_u), v = wide(disk.edge_v);
+  const DoubleVec n = cross(u, v), from_center{o.x - c.x, o.y - c.y, o.z - c.z};
+  const double t = -dot(from_center, n) / dot(d, n);
+  if (!std::isfinite(t)) {
+    return std::nullopt;
+  }
+  const DoubleVec p{from_center.x + t * d.x, from_center.y + t * d.y, from_center.z + t * d.z};
+  // Cramer's rule in the plane: p = x u + y v.
+  const double nn = dot(n, n);
+  const DiskCrossing crossing{t, dot(cross(p, v), n) / nn, dot(cross(u, p), n) / nn};
+  if (!(crossing.x * crossing.x + crossing.y * crossing.y <= 1)) {
+    return std::nullopt;
+  }
+  return crossing;
 }
 
 bool is_mirroring(const Transform& transform) {

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/math/math.h"
 #include "core/math/vec.h"
 
 namespace spectrace {
@@ -51,6 +52,26 @@ struct Quad {
                    max_abs(q.corner + q.edge_u + q.edge_v)});
 }
 
+/// The filled ellipse center + x edge_u + y edge_v, x² + y² <= 1: an affine map leaves a disk one of these.
+/// Front as a quad's.
+struct Disk {
+  Vec3 center, edge_u, edge_v;
+  bool mirrored = false;
+
+  [[nodiscard]] Vec3 scaled_normal() const {  ///< its length is the area
+    const Vec3 n = cross(edge_u, edge_v) * kPi;
+    return mirrored ? -n : n;
+  }
+  /// Of the smallest box around it: half its sides.
+  [[nodiscard]] Vec3 half_extent() const {
+    return {std::hypot(edge_u.x, edge_v.x), std::hypot(edge_u.y, edge_v.y), std::hypot(edge_u.z, edge_v.z)};
+  }
+};
+
+[[nodiscard]] inline Float largest_coordinate(const Disk& d) {
+  return max_abs(d.center) + max_abs(d.half_extent());
+}
+
 /// Counter-clockwise triangles seen from the front.
 struct TriangleMesh {
   std::vector<Vec3> positions;
@@ -60,7 +81,7 @@ struct TriangleMesh {
 };
 
 struct Shape {
-  std::variant<Sphere, Quad, TriangleMesh> geometry;
+  std::variant<Sphere, Quad, TriangleMesh, Disk> geometry;
   std::uint32_t material = 0;
   std::uint32_t first_light = kNone;  ///< area light of primitive 0; the others follow
 };
@@ -104,6 +125,13 @@ struct SphereCrossings {
   double near = 0, far = 0;
 };
 [[nodiscard]] std::optional<SphereCrossings> intersect_sphere(const Sphere& sphere, const Ray& ray);
+
+/// Where a line crosses a disk, in double; nullopt where it misses it or runs along its plane.
+struct DiskCrossing {
+  double t = 0;         ///< in units of the direction
+  double x = 0, y = 0;  ///< along the disk's edges
+};
+[[nodiscard]] std::optional<DiskCrossing> intersect_disk(const Disk& disk, const Ray& ray);
 
 /// The inverse map, in double inside; nullopt where the determinant is 0 or not finite.
 [[nodiscard]] std::optional<Transform> inverse(const Transform& transform);

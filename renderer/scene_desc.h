@@ -52,6 +52,10 @@ struct SphereDesc {
 struct QuadDesc {  ///< corner + [0,1] edge_u + [0,1] edge_v; normal = edge_u x edge_v; uv along the edges
   Vec3 corner{}, edge_u{1, 0, 0}, edge_v{0, 1, 0};
 };
+struct DiskDesc {
+  Vec3 center{}, normal{0, 0, 1};  ///< any length but zero
+  Float radius = 1;
+};
 struct MeshDesc {  ///< triangles of an OBJ file, or given in place
   std::filesystem::path file{};
   std::vector<Vec3> positions{};
@@ -64,7 +68,7 @@ struct InstanceDesc {  ///< a group under one more transform
 
 struct ShapeDesc {
   std::string where;  ///< JSON place, for messages at build time
-  std::variant<SphereDesc, QuadDesc, MeshDesc, InstanceDesc> kind;
+  std::variant<SphereDesc, QuadDesc, DiskDesc, MeshDesc, InstanceDesc> kind;
   std::string material{};  ///< name; ignored for instances
   Transform to_world{};
   std::optional<Spectrum> emission{};  ///< radiance [W·m⁻²·sr⁻¹·nm⁻¹], front side; not inside groups

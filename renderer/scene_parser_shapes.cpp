@@ -128,6 +128,14 @@ QuadDesc parse_quad(const JsonValue& json) {
   return quad;
 }
 
+DiskDesc parse_disk(const JsonValue& json) {
+  DiskDesc disk;
+  disk.center = json.get("center").vec3(disk.center);
+  disk.normal = parse_nonzero(json.get("normal"), disk.normal);
+  disk.radius = static_cast<Float>(json.get("radius").number(disk.radius, kPositiveFloat));
+  return disk;
+}
+
 void parse_triangles(const JsonValue& json, MeshDesc& mesh) {
   const auto count = static_cast<std::int64_t>(mesh.positions.size());
   for (const JsonValue& element : json.elements()) {
@@ -206,8 +214,8 @@ ShapeDesc parse_shape(const JsonValue& json, const SceneNames& names, ShapePlace
   shape.where = json.where();
   const bool in_group = place == ShapePlace::kGroup;
   const JsonValue type_json = json.require("type");
-  const std::string type = in_group ? type_json.choice("", {"sphere", "quad", "mesh"})
-                                    : type_json.choice("", {"sphere", "quad", "mesh", "instance"});
+  const std::string type = in_group ? type_json.choice("", {"sphere", "quad", "disk", "mesh"})
+                                    : type_json.choice("", {"sphere", "quad", "disk", "mesh", "instance"});
   if (type.empty()) {
     return shape;  // recorded; without a type no key is known or unknown
   }
@@ -221,6 +229,8 @@ ShapeDesc parse_shape(const JsonValue& json, const SceneNames& names, ShapePlace
     shape.kind = parse_sphere(json);
   } else if (type == "quad") {
     shape.kind = parse_quad(json);
+  } else if (type == "disk") {
+    shape.kind = parse_disk(json);
   } else {
     shape.kind = parse_mesh(json);
   }

@@ -77,6 +77,24 @@ std::optional<Shape> ShapeBuilder::make(const ShapeDesc& shape, const QuadDesc& 
   return Shape{.geometry = placed};
 }
 
+std::optional<Shape> ShapeBuilder::make(const ShapeDesc& shape, const DiskDesc& disk) {
+  if (!(length_squared(disk.normal) > 0)) {
+    fail(shape, "the normal of a disk must not be zero");
+  }
+  const Transform& t = shape.to_world;
+  const Frame frame = Frame::from_normal(normalize(disk.normal));
+  const Disk placed{t.point(disk.center), t.vector(frame.s * disk.radius), t.vector(frame.t * disk.radius),
+                    is_mirroring(t)};
+  const Float u = max_abs(placed.edge_u), v = max_abs(placed.edge_v);
+  if (!in_reach(placed.center) || !in_reach(placed.edge_u) || !in_reach(placed.edge_v) ||
+      !(largest_coordinate(placed) <= kLargestCoordinate) || !(u > 0) || !(v > 0) ||
+      cross(placed.edge_u / u, placed.edge_v / v) == Vec3{}) {
+    progress_.note(fmt::format("{}: disk without area, or out of reach, skipped", shape.where));
+    return std::nullopt;
+  }
+  return Shape{.geometry = placed};
+}
+
 std::optional<Shape> ShapeBuilder::make(const ShapeDesc& shape, const MeshDesc& mesh) {
   const std::string name = mesh.file.empty() ? shape.where : mesh.file.string();
   TriangleMesh loaded;

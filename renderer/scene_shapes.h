@@ -37,6 +37,7 @@ class ShapeBuilder {
 
   std::optional<Shape> make(const ShapeDesc& shape, const SphereDesc& sphere);
   std::optional<Shape> make(const ShapeDesc& shape, const QuadDesc& quad);
+  std::optional<Shape> make(const ShapeDesc& shape, const DiskDesc& disk);
   std::optional<Shape> make(const ShapeDesc& shape, const MeshDesc& mesh);
 
   const SceneDesc& description_;

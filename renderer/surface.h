@@ -84,6 +84,25 @@ inline LocalPoint quad_point(const Quad& quad, Float u, Float v) {
   return point;
 }
 
+/// `x` and `y` along the edges. u is the angle from edge_u in turns, v falls from 1 at the centre to 0 at the
+/// rim: so that u and v are not mirrored seen from the front.
+inline LocalPoint disk_point(const Disk& disk, Float x, Float y, bool want_uv) {
+  LocalPoint point;
+  SurfacePoint& s = point.surface;
+  s.position = disk.center + disk.edge_u * x + disk.edge_v * y;
+  s.normal_g = triangle_normal(disk.edge_u, disk.mirrored ? -disk.edge_v : disk.edge_v);
+  s.normal_s = s.normal_g;
+  const bool is_center = x == 0 && y == 0;
+  s.tangent = is_center ? disk.edge_v : disk.edge_v * x - disk.edge_u * y;
+  s.v_sign = disk.mirrored ? Float(-1) : Float(1);
+  if (want_uv) {
+    const Float turn = is_center ? 0 : std::atan2(y, x) * (kInvPi / 2);
+    s.uv = {turn < 0 ? turn + 1 : turn, 1 - safe_sqrt(x * x + y * y)};
+  }
+  point.magnitude = largest_coordinate(disk);
+  return point;
+}
+
 inline LocalPoint triangle_point(const TriangleMesh& mesh, std::uint32_t primitive, Float u, Float v,
                                  bool want_uv) {
   const auto [a, b, c] = mesh.triangles[primitive];
@@ -164,7 +183,8 @@ SurfacePoint surface_point(const Geometry& geometry, const Ray& ray, const Inter
   } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
     point = detail::triangle_point(*mesh, hit.primitive, hit.u, hit.v, kQuery.uv);
   } else {
-    static_assert(std::variant_size_v<decltype(Shape::geometry)> == 3, "a kind of shape without its point");
+    point = detail::disk_point(std::get<Disk>(shape.geometry), hit.u, hit.v, kQuery.uv);
+    static_assert(std::variant_size_v<decltype(Shape::geometry)> == 4, "a kind of shape without its point");
   }
   if (instance != nullptr) {
     detail::move_to_world(*instance, point);

@@ -80,6 +80,46 @@ TEST(KnownRadiance, FloorUnderTriangleLight) {
   expect_y(render_scene(scene, 1024).image, 0.5 * 3 * 4 * corner_factor(1, 2, 2));
 }
 
+TEST(KnownRadiance, FloorUnderADiskLight) {
+  SceneDesc scene = floor_scene();
+  // Over the disk's centre, parallel to it: π L r² / (r² + h²).
+  scene.shapes.push_back(emitting(disk({0, 0, 2}, {0, 0, -3}, Float(1.5), "black"), 7));
+  for (bool next_event : {true, false}) {
+    scene.integrator.next_event = next_event;
+    const Image image = render_scene(scene, next_event ? 256 : 4096).image;
+    expect_y(image, 0.5 * 7 * 2.25 / (2.25 + 4));
+    expect_y(image, 0.5 * 7 * 2.25 / (2.25 + 4), "diffuse");
+  }
+  // Its back is dark.
+  scene.shapes.back() = emitting(disk({0, 0, 2}, {0, 0, 3}, Float(1.5), "black"), 7);
+  EXPECT_EQ(estimate_y(render_scene(scene, 16).image).mean, 0);
+}
+
+/// Irradiance / π L under the middle of an ellipse with half axes a and b at height h, by quadrature:
+/// ∫ cos⁴θ / h² dA.
+double ellipse_factor(double a, double b, double h) {
+  constexpr int kSteps = 1000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double r = (i + 0.5) / kSteps;
+    for (int j = 0; j < kSteps; ++j) {
+      const double phi = 2 * kPi64 * (j + 0.5) / kSteps;
+      const double d2 = h * h + sqr(a * r * std::cos(phi)) + sqr(b * r * std::sin(phi));
+      sum += r * h * h / (d2 * d2);
+    }
+  }
+  return sum * a * b * 2 * kPi64 / kSteps / kSteps / kPi64;
+}
+
+TEST(KnownRadiance, FloorUnderAnEllipseLight) {
+  EXPECT_NEAR(ellipse_factor(1.5, 1.5, 2), 2.25 / 6.25, 1e-6);
+  SceneDesc scene = floor_scene();
+  // The same through a map that stretches and mirrors it: fronts stay in front.
+  const Transform map = translation({0, 0, 2}).compose(scaling({Float(-2), Float(0.5), 1}));
+  scene.shapes.push_back(emitting(moved(disk({0, 0, 0}, {0, 0, -1}, 1, "black"), map), 7));
+  expect_y(render_scene(scene, 1024).image, 0.5 * 7 * ellipse_factor(2, 0.5, 2));
+}
+
 TEST(KnownRadiance, FloorUnderPointLight) {
   SceneDesc scene = floor_scene();
   scene.lights = {PointLightDesc{{0, 4, 3}, Spectrum::constant(20)}};
@@ -153,7 +193,8 @@ TEST(KnownRadiance, WhiteFurnaceOfConvexBodies) {
   scene.materials = {lambert("white", 1)};
   scene.lights = {sky(1)};
   for (const ShapeDesc& shape :
-       {sphere({0, 0, 0}, 1, "white"), quad({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, "white")}) {
+       {sphere({0, 0, 0}, 1, "white"), quad({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, "white"),
+        disk({0, 0, 0}, {0, -1, 0}, 9, "white")}) {
     scene.shapes = {shape};
     scene.camera.fov_deg = 10;  // all of it on the body
     const Estimate y = estimate_y(render_scene(scene, 16384).image);

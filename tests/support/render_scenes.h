@@ -23,6 +23,9 @@ inline ShapeDesc sphere(Vec3 center, Float radius, const std::string& material) 
 inline ShapeDesc quad(Vec3 corner, Vec3 edge_u, Vec3 edge_v, const std::string& material) {
   return {.where = "/shapes/quad", .kind = QuadDesc{corner, edge_u, edge_v}, .material = material};
 }
+inline ShapeDesc disk(Vec3 center, Vec3 normal, Float radius, const std::string& material) {
+  return {.where = "/shapes/disk", .kind = DiskDesc{center, normal, radius}, .material = material};
+}
 inline ShapeDesc emitting(ShapeDesc shape, Spectrum radiance) {
   shape.emission = std::move(radiance);
   return shape;

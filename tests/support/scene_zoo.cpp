@@ -69,6 +69,7 @@ SceneDesc instance_scene() {
   scene.shapes.pop_back();
   scene.groups = {{"pair",
                    {sphere({0, 0, 1}, Float(0.5), "ball"),
+                    disk({0, 0, Float(1.7)}, {0, -1, 1}, Float(0.3), "ball"),
                     {.where = "",
                      .kind = polyhedral_sphere(6, 9),
                      .material = "floor",
@@ -177,6 +178,13 @@ std::vector<NamedScene> scene_zoo() {
             .kind = PlasticDesc{Spectrum::constant(Float(0.3)), Spectrum::constant(Float(1.5)), 0}})});
   zoo.back().scene.shapes.push_back(lamp());
   zoo.back().scene.lights = {sky(Float(0.3))};
+  zoo.push_back({"checkered disk under a disk of light",
+                 ball_scene(glossy("ball", Texture(Checkerboard{Spectrum::constant(Float(0.2)),
+                                                                Spectrum::constant(Float(0.8)), 12, 6})),
+                            lambert("floor", Float(0.5)))});
+  zoo.back().scene.shapes[1] = moved(disk({0, 0, 0}, {0, -1, 1}, 1, "ball"),
+                                     translation({0, 0, 1}).compose(scaling({Float(1.5), 1, 1})));
+  zoo.back().scene.shapes.push_back(emitting(disk({-1, -1, 4}, {1, 1, -4}, 1, "black"), 6));
   zoo.push_back({"mixed and bumpy ball behind a masked pane", nested_scene()});
   zoo.push_back({"instances", instance_scene()});
   zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "renderer/accel_embree.h"
 #include "renderer/geometry.h"
+#include "renderer/surface.h"
 
 namespace spectrace {
 namespace {
@@ -33,6 +36,59 @@ TEST(Accel, HitsNameTheirShapeBesideGroups) {
     ASSERT_TRUE(hit_at(x).has_value());
     EXPECT_EQ(hit_at(x)->shape, shape);
     EXPECT_EQ(hit_at(x)->instance, 0U);
+  }
+}
+
+TEST(Accel, DisksAreHitWithinTheirRimAndNowhereElse) {
+  Geometry geometry;
+  // An ellipse of half axes 2 and 1, in a plane through z = 3 tilted by 45 degrees about x.
+  geometry.shapes = {
+      Shape{.geometry = Disk{{0, 0, 3}, {2, 0, 0}, {0, std::sqrt(Float(0.5)), std::sqrt(Float(0.5))}}}};
+  geometry.top = {0, 1};
+  const Accel accel(geometry);
+  const auto hit_at = [&](Float x, Float y) { return accel.intersect(Ray{{x, y, 10}, {0, 0, -2}}); };
+  for (double turn = 0; turn < 6.2; turn += 0.3) {
+    for (double r : {0.0, 0.5, 0.9999, 1.0001, 1.2}) {
+      const auto x = Float(2 * r * std::cos(turn)), y = Float(r * std::sqrt(0.5) * std::sin(turn));
+      const auto hit = hit_at(x, y);
+      ASSERT_EQ(hit.has_value(), r < 1) << r << ' ' << turn;
+      EXPECT_EQ(accel.occluded(Ray{{x, y, 10}, {0, 0, -2}}), r < 1);
+      if (!hit) continue;
+      EXPECT_NEAR(hit->t, (7 - double(y)) / 2, 1e-5);  // z = 3 + y
+      EXPECT_NEAR(hit->u, r * std::cos(turn), 1e-5);
+      EXPECT_NEAR(hit->v, r * std::sin(turn), 1e-5);
+      const SurfacePoint point = surface_point<SurfaceQuery{}>(geometry, Ray{{x, y, 10}, {0, 0, -2}}, *hit);
+      EXPECT_NEAR(length(point.position - Vec3{x, y, 3 + y}), 0, 1e-5);
+      EXPECT_NEAR(point.normal_g.z, std::sqrt(0.5), 1e-6);
+      EXPECT_NEAR(point.uv.y, 1 - r, 1e-5);
+      EXPECT_NEAR(point.uv.x, r > 0 ? turn / (2 * kPi64) : 0, 1e-5);
+      EXPECT_NEAR(dot(point.tangent, point.normal_g), 0, 1e-6);
+    }
+  }
+  EXPECT_FALSE(accel.intersect(Ray{{-5, 0, 3}, {1, 0, 0}}));      // along its plane
+  EXPECT_FALSE(accel.intersect(Ray{{0, 0, 10}, {0, 0, -1}, 6}));  // ends before it
+  EXPECT_FALSE(accel.intersect(Ray{{0, 0, 0}, {0, 0, -1}}));      // away from it
+}
+
+TEST(Surface, CoordinatesOfADiskAreMirroredOnlyWhereTheDiskIs) {
+  Geometry geometry;
+  geometry.shapes = {Shape{.geometry = Disk{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}}};
+  geometry.top = {0, 1};
+  const Float step = Float(1e-3);
+  for (bool mirrored : {false, true}) {
+    std::get<Disk>(geometry.shapes[0].geometry).mirrored = mirrored;
+    const auto at = [&](Float x, Float y) {
+      return surface_point<SurfaceQuery{}>(geometry, Ray{}, Intersection{.t = 1, .u = x, .v = y});
+    };
+    const SurfacePoint point = at(Float(0.3), Float(0.5));
+    EXPECT_EQ(point.normal_g.z, mirrored ? -1 : 1);
+    // Along the tangent u grows and v stays, to first order; towards the centre v grows.
+    const Vec3 way = normalize(point.tangent) * step;
+    const SurfacePoint along = at(Float(0.3) + way.x / 2, Float(0.5) + way.y);
+    EXPECT_GT(along.uv.x, point.uv.x);
+    EXPECT_NEAR(along.uv.y, point.uv.y, 1e-5);
+    const Vec3 inwards = cross(point.normal_g, point.tangent) * point.v_sign;
+    EXPECT_LT(dot(inwards, Vec3{Float(0.6), Float(0.5), 0}), 0);
   }
 }
 

@@ -29,6 +29,12 @@ std::optional<Hit> trace(const Quad& q, const Ray& ray) {
   return Hit{p, n};
 }
 
+std::optional<Hit> trace(const Disk& d, const Ray& ray) {
+  const auto crossing = intersect_disk(d, ray);
+  if (!crossing) return std::nullopt;
+  return Hit{ray.origin + ray.direction * Float(crossing->t), normalize(d.scaled_normal())};
+}
+
 /// Samples a light from many places: densities agree with light_pdf(), and the mean of 1 / pdf is the solid
 /// angle.
 template <typename Shape>
@@ -88,6 +94,41 @@ TEST(QuadLight, ShowsNothingFromBehind) {
   Quad mirrored = quad;
   mirrored.mirrored = true;
   EXPECT_TRUE(sample_light(mirrored, {0, 0, 0}, {Float(0.5), Float(0.5)}));
+}
+
+TEST(DiskLight, SolidAngleMatchesTheClosedForm) {
+  // Seen from above its centre: a cone of half angle atan(radius / distance).
+  const Disk disk{{0, 0, 1}, {0, 2, 0}, {2, 0, 0}};
+  EXPECT_NEAR(solid_angle(disk, {0, 0, 0}), 2 * kPi64 * (1 - 1 / std::sqrt(5)), 0.01);
+  // An ellipse from far away: area · cosine / distance².
+  const Disk ellipse{{0, 0, 1000}, {1, 3, 0}, {4, 0, 0}};
+  EXPECT_NEAR(solid_angle(ellipse, {0, 0, 0}) / (kPi64 * 12 / 1e6), 1, 1e-4);
+}
+
+TEST(DiskLight, ShowsNothingFromBehind) {
+  Disk disk{{0, 0, 1}, {2, 0, 0}, {0, 2, 0}};
+  EXPECT_FALSE(sample_light(disk, {0, 0, 0}, {Float(0.3), Float(0.5)}));
+  disk.mirrored = true;
+  EXPECT_TRUE(sample_light(disk, {0, 0, 0}, {Float(0.3), Float(0.5)}));
+}
+
+TEST(DiskLight, PointsOfAnEllipseAreUniform) {
+  const Disk ellipse{{0, 0, 1}, {1, 3, 0}, {4, 0, 0}};
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform;
+  double inner = 0, half = 0;
+  constexpr int kSamples = 20000;
+  for (int i = 0; i < kSamples; ++i) {
+    const auto point = sample_light(ellipse, {0, 0, 0}, {Float(uniform(random)), Float(uniform(random))});
+    ASSERT_TRUE(point);
+    const auto at = intersect_disk(ellipse, Ray{{0, 0, 0}, point->wi});
+    if (!at) continue;  // rounded past the rim
+    inner += at->x * at->x + at->y * at->y < 0.25 ? 1 : 0;
+    half += at->x > 0 ? 1 : 0;
+  }
+  // 4 standard errors of shares of 1/4 and 1/2.
+  EXPECT_NEAR(inner / kSamples, 0.25, 4 * std::sqrt(0.25 * 0.75 / kSamples));
+  EXPECT_NEAR(half / kSamples, 0.5, 4 * std::sqrt(0.25 / kSamples));
 }
 
 TEST(TriangleLight, PointsAreUniform) {

@@ -208,6 +208,10 @@ TEST(SceneParser, RefusesShapesThatAreNone) {
   expect_problem(
       R"("shapes": [{"type": "quad", "material": "clay", "corner": [0, 0, 0], "edge_u": [1, 2, 3], "edge_v": [-2, -4, -6]}])",
       "/shapes/0/edge_v: is parallel to edge_u");
+  expect_problem(R"("shapes": [{"type": "disk", "material": "clay", "normal": [0, 0, 0]}])",
+                 "/shapes/0/normal: expected a vector that is not zero");
+  expect_problem(R"("shapes": [{"type": "disk", "material": "clay", "radius": -1}])",
+                 "/shapes/0/radius: expected a number > 0, ");
   expect_problem(R"("shapes": [{"type": "sphere", "material": "clay", "radius": 0}])",
                  "/shapes/0/radius: expected a number > 0, ");
   expect_problem(R"("shapes": [{"type": "sphere", "material": "clay", "radius": 1e300}])",
@@ -225,8 +229,9 @@ TEST(SceneParser, RefusesShapesThatAreNone) {
 }
 
 TEST(SceneParser, GroupsHoldNoInstancesAndNoLight) {
-  expect_problem(R"("groups": [{"name": "g", "shapes": [{"type": "instance", "group": "g"}]}])",
-                 R"(/groups/0/shapes/0/type: expected one of "sphere", "quad", "mesh", got "instance")");
+  expect_problem(
+      R"("groups": [{"name": "g", "shapes": [{"type": "instance", "group": "g"}]}])",
+      R"(/groups/0/shapes/0/type: expected one of "sphere", "quad", "disk", "mesh", got "instance")");
   expect_problem(
       R"("groups": [{"name": "g", "shapes": [{"type": "sphere", "material": "clay", "emission": 1}]}])",
       "/groups/0/shapes/0/emission: shapes inside groups cannot emit");

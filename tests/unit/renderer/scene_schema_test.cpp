@@ -115,9 +115,11 @@ Json everything() {
       {"name": "lobes", "type": "separated", "file": "furnace.json", "model": "fresnel"}],
     "groups": [{"name": "pair", "shapes": [
       {"type": "sphere", "material": "clay", "center": [0, 0, 1], "radius": 0.5},
+      {"type": "disk", "material": "clay", "normal": [0, 1, 1]},
       {"type": "mesh", "material": "paint", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}]}],
     "shapes": [
       {"type": "quad", "material": "floor", "corner": [-9, -9, 0], "edge_u": [18, 0, 0], "edge_v": [0, 18, 0]},
+      {"type": "disk", "material": "clay", "center": [0, 0, 4], "normal": [0, 0, -1], "radius": 0.5, "emission": 2},
       {"type": "sphere", "material": "glass", "transform": {"scale": [0.5, 0.5, 0.5]}},
       {"type": "sphere", "material": "clay", "emission": {"blackbody_K": 4000, "scale": 2}},
       {"type": "mesh", "material": "coat", "file": "meshes/torus.obj", "smooth_normals": false,
