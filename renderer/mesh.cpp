@@ -14,6 +14,7 @@
 #include <unordered_set>
 
 #include "core/base/error.h"
+#include "renderer/ply_file.h"
 
 namespace spectrace {
 
@@ -171,6 +172,10 @@ TriangleMesh read_obj(const std::filesystem::path& file) {
     }
   }
   return std::move(welder.mesh);
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& file) {
+  return is_ply(file) ? read_ply(file) : read_obj(file);
 }
 
 TriangleMesh place_mesh(TriangleMesh mesh, const Transform& to_world, MeshReport& report) {

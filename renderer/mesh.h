@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangle meshes: read from OBJ (the one door to tinyobjloader), moved into place, cleaned.
+// Triangle meshes: read from OBJ (the one door to tinyobjloader) or PLY, moved into place, cleaned.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +30,9 @@ struct MeshReport {
 /// All faces of an OBJ file, polygons cut into triangles. Throws InputError where it cannot be read or an
 /// index names no vertex. Not yet cleaned.
 [[nodiscard]] TriangleMesh read_obj(const std::filesystem::path& file);
+
+/// A PLY file if it begins as one, else an OBJ file.
+[[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// The mesh under a transform, without triangles that cannot be hit (hard case H14). Reflections keep fronts
 /// in front: winding is turned. Triangle indices must lie within `positions` (checked).

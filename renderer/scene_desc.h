@@ -56,7 +56,7 @@ struct DiskDesc {
   Vec3 center{}, normal{0, 0, 1};  ///< any length but zero
   Float radius = 1;
 };
-struct MeshDesc {  ///< triangles of an OBJ file, or given in place
+struct MeshDesc {  ///< triangles of an OBJ or PLY file, or given in place
   std::filesystem::path file{};
   std::vector<Vec3> positions{};
   std::vector<std::array<std::uint32_t, 3>> triangles{};

@@ -109,7 +109,7 @@ std::optional<Shape> ShapeBuilder::make(const ShapeDesc& shape, const MeshDesc& 
     loaded.positions = mesh.positions;
     loaded.triangles = mesh.triangles;
   } else {
-    loaded = read_obj(mesh.file);
+    loaded = read_mesh(mesh.file);
   }
   if (!mesh.smooth_normals) {
     loaded.normals.clear();
