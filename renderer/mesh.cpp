@@ -2,88 +2,21 @@
 #include "renderer/mesh.h"
 
 #include <fmt/core.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <sstream>
-#include <unordered_map>
 #include <unordered_set>
 
 #include "core/base/error.h"
+#include "renderer/obj_file.h"
 #include "renderer/ply_file.h"
+#include "renderer/words_hash.h"
 
 namespace spectrace {
 
 namespace {
-
-/// FNV-1a over whole words: collisions only cost time, equality decides.
-struct WordsHash {
-  template <typename Words>
-  std::size_t operator()(const Words& words) const {
-    std::uint64_t h = 0xcbf29ce484222325U;
-    for (auto word : words) {
-      h = (h ^ static_cast<std::uint64_t>(word)) * 0x100000001b3U;
-      h ^= h >> 29U;
-    }
-    return h;
-  }
-};
-
-using VertexKey = std::array<int, 3>;  // position, texture coordinate, normal; -1: none
-
-Vec3 triple(const std::vector<tinyobj::real_t>& values, int index) {
-  const std::size_t i = std::size_t(index) * 3;
-  return {Float(values[i]), Float(values[i + 1]), Float(values[i + 2])};
-}
-
-/// Gives every combination of indices a vertex of its own.
-class ObjWelder {
- public:
-  ObjWelder(const tinyobj::attrib_t& attributes, std::string file)
-      : attributes_(attributes), file_(std::move(file)) {
-    has_normals_ = !attributes.normals.empty();
-    has_uvs_ = !attributes.texcoords.empty();
-  }
-
-  std::uint32_t vertex(const tinyobj::index_t& index) {
-    const auto outside = [](int i, std::size_t numbers, std::size_t per) { return i >= int(numbers / per); };
-    if (index.vertex_index < 0 || outside(index.vertex_index, attributes_.vertices.size(), 3) ||
-        outside(index.normal_index, attributes_.normals.size(), 3) ||
-        outside(index.texcoord_index, attributes_.texcoords.size(), 2)) {
-      throw InputError(
-          file_, "",
-          fmt::format("a face names vertex {}, which the file does not have", index.vertex_index + 1));
-    }
-    const VertexKey key{index.vertex_index, index.texcoord_index, index.normal_index};
-    const auto [it, is_new] = known_.try_emplace(key, std::uint32_t(mesh.positions.size()));
-    if (is_new) {
-      mesh.positions.push_back(triple(attributes_.vertices, key[0]));
-      if (has_uvs_) {
-        const std::size_t i = std::size_t(std::max(key[1], 0)) * 2;
-        mesh.uvs.push_back(
-            key[1] < 0 ? Vec2{} : Vec2{Float(attributes_.texcoords[i]), Float(attributes_.texcoords[i + 1])});
-      }
-      if (has_normals_) {
-        mesh.normals.push_back(key[2] < 0 ? Vec3{} : triple(attributes_.normals, key[2]));
-      }
-    }
-    return it->second;
-  }
-
-  TriangleMesh mesh;
-
- private:
-  const tinyobj::attrib_t& attributes_;
-  std::string file_;
-  bool has_normals_ = false, has_uvs_ = false;
-  std::unordered_map<VertexKey, std::uint32_t, WordsHash> known_;
-};
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 /// Twice the area, in double: a product of small floats must not underflow to "no area".
 double doubled_area(Vec3 a, Vec3 b, Vec3 c) {
@@ -143,35 +76,6 @@ std::string MeshReport::text(std::size_t triangles) const {
                         what.empty() ? "" : "; ", bad_normals);
   }
   return what;
-}
-
-TriangleMesh read_obj(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw InputError(file.string(), "", "cannot be opened");
-  }
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  constexpr bool kTriangulate = true, kVertexColors = false;
-  // No material reader: materials are the scene's, and a mesh may not open further files.
-  const bool ok = tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, nullptr,
-                                   kTriangulate, kVertexColors);
-  if (!ok || !error.empty()) {
-    throw InputError(file.string(), "", error.empty() ? "is not an OBJ file" : first_line(error));
-  }
-  ObjWelder welder(attributes, file.string());
-  for (const tinyobj::shape_t& shape : shapes) {
-    const auto& indices = shape.mesh.indices;
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      const std::uint32_t a = welder.vertex(indices[i]);
-      const std::uint32_t b = welder.vertex(indices[i + 1]);
-      const std::uint32_t c = welder.vertex(indices[i + 2]);
-      welder.mesh.triangles.push_back({a, b, c});
-    }
-  }
-  return std::move(welder.mesh);
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangle meshes: read from OBJ (the one door to tinyobjloader) or PLY, moved into place, cleaned.
+// Triangle meshes: read from OBJ or PLY, moved into place, cleaned.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,6 @@ struct MeshReport {
   /// "3 triangles without area and 1 duplicate skipped of 968; ...", empty where nothing happened.
   [[nodiscard]] std::string text(std::size_t triangles) const;
 };
-
-/// All faces of an OBJ file, polygons cut into triangles. Throws InputError where it cannot be read or an
-/// index names no vertex. Not yet cleaned.
-[[nodiscard]] TriangleMesh read_obj(const std::filesystem::path& file);
 
 /// A PLY file if it begins as one, else an OBJ file.
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);

@@ -142,15 +142,17 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   std::vector<Float> measured_cosines;
   std::vector<std::string> digests;
   bool holes = false;
-  for (const MaterialDesc& material : description.materials) {
+  const auto add_material = [&](const MaterialDesc& material) {
     materials.push_back(build_material(material));
     note_albedo(material.name, materials.back(), progress);
     measured_cosines.push_back(last_measured_cosine(materials.back()));
     holes |= has_holes(materials.back());
     for_each_desc(material, [&](const MaterialDesc& part) { add_digest(part, material.name, digests); });
-  }
+  };
+  for (const MaterialDesc& material : description.materials) add_material(material);
   ShapeBuilder shapes(description, progress);
   shapes.build();
+  for (const MaterialDesc& material : shapes.libraries.materials) add_material(material);
   DistantLights distant = build_lights(description);
   Accel accel(shapes.geometry);
   const auto uniform = WavelengthDistribution::uniform(description.range);

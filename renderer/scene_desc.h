@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -61,6 +62,9 @@ struct MeshDesc {  ///< triangles of an OBJ or PLY file, or given in place
   std::vector<Vec3> positions{};
   std::vector<std::array<std::uint32_t, 3>> triangles{};
   bool smooth_normals = true;  ///< use the file's normals where it has them
+  /// Of an OBJ file: split it by its materials; those named here are the scene's ("usemtl" name, scene's
+  /// name), the others are made from the file's material library. Nothing: one material for all.
+  std::optional<std::map<std::string, std::string>> materials{};
 };
 struct InstanceDesc {  ///< a group under one more transform
   std::string group;

@@ -158,13 +158,38 @@ void parse_triangles(const JsonValue& json, MeshDesc& mesh) {
   }
 }
 
-MeshDesc parse_mesh(const JsonValue& json) {
+/// The value as a name that must be in `known`.
+std::string parse_reference(const JsonValue& json, const char* what, const std::vector<std::string>& known) {
+  std::string name = json.string();
+  if (json.is_string() && std::find(known.begin(), known.end(), name) == known.end()) {
+    json.error(fmt::format("there is no {} \"{}\"{}", what, name, suggestion(name, known)));
+  }
+  return name;
+}
+
+/// {"usemtl name": "scene's name"}.
+std::map<std::string, std::string> parse_mapping(const JsonValue& json,
+                                                 const std::vector<std::string>& known) {
+  std::map<std::string, std::string> mapping;
+  for (const std::string& key : json.keys()) {
+    mapping[key] = parse_reference(json.get(key), "material", known);
+  }
+  return mapping;
+}
+
+MeshDesc parse_mesh(const JsonValue& json, const SceneNames& names) {
   MeshDesc mesh;
   const JsonValue file = json.get("file"), positions = json.get("positions"),
                   triangles = json.get("triangles");
   if (file.exists()) {
     mesh.file = parse_existing_file(file);
     mesh.smooth_normals = json.get("smooth_normals").boolean(mesh.smooth_normals);
+    if (const JsonValue materials = json.get("materials"); materials.exists()) {
+      mesh.materials = parse_mapping(materials, names.materials);
+      if (const JsonValue emission = json.get("emission"); emission.exists()) {
+        emission.error("\"materials\" leaves it to the file's library (Ke) what emits");
+      }
+    }
     if (positions.exists() || triangles.exists()) {
       (positions.exists() ? positions : triangles)
           .error("a mesh is a \"file\" or \"positions\" and \"triangles\", not both");
@@ -180,15 +205,6 @@ MeshDesc parse_mesh(const JsonValue& json) {
   }
   parse_triangles(json.require("triangles"), mesh);
   return mesh;
-}
-
-/// The value as a name that must be in `known`.
-std::string parse_reference(const JsonValue& json, const char* what, const std::vector<std::string>& known) {
-  std::string name = json.string();
-  if (json.is_string() && std::find(known.begin(), known.end(), name) == known.end()) {
-    json.error(fmt::format("there is no {} \"{}\"{}", what, name, suggestion(name, known)));
-  }
-  return name;
 }
 
 }  // namespace
@@ -232,9 +248,12 @@ ShapeDesc parse_shape(const JsonValue& json, const SceneNames& names, ShapePlace
   } else if (type == "disk") {
     shape.kind = parse_disk(json);
   } else {
-    shape.kind = parse_mesh(json);
+    shape.kind = parse_mesh(json, names);
   }
-  shape.material = parse_reference(json.require("material"), "material", names.materials);
+  const auto* mesh = std::get_if<MeshDesc>(&shape.kind);
+  const bool brings_materials = mesh != nullptr && mesh->materials;
+  shape.material = parse_reference(brings_materials ? json.get("material") : json.require("material"),
+                                   "material", names.materials);
   if (const JsonValue emission = json.get("emission"); emission.exists()) {
     shape.emission = parse_spectrum(emission, SpectrumRole::kEmission);
     if (in_group) {

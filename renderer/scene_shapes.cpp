@@ -8,9 +8,12 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/base/overloaded.h"
 #include "core/math/math.h"
 #include "renderer/mesh.h"
+#include "renderer/obj_file.h"
+#include "renderer/ply_file.h"
 
 namespace spectrace {
 
@@ -38,12 +41,12 @@ void ShapeBuilder::fail(const ShapeDesc& shape, std::string problem) const {
   throw InputError(description_.file_name, shape.where, std::move(problem));
 }
 
-std::uint32_t ShapeBuilder::material_index(const ShapeDesc& shape) const {
+std::uint32_t ShapeBuilder::material_index(const ShapeDesc& shape, const std::string& name) const {
   const auto& materials = description_.materials;
-  const auto it = std::find_if(materials.begin(), materials.end(),
-                               [&](const MaterialDesc& m) { return m.name == shape.material; });
+  const auto it =
+      std::find_if(materials.begin(), materials.end(), [&](const MaterialDesc& m) { return m.name == name; });
   if (it == materials.end()) {
-    fail(shape, fmt::format("no material is named \"{}\"", shape.material));
+    fail(shape, fmt::format("no material is named \"{}\"", name));
   }
   return std::uint32_t(it - materials.begin());
 }
@@ -114,6 +117,11 @@ std::optional<Shape> ShapeBuilder::make(const ShapeDesc& shape, const MeshDesc& 
   if (!mesh.smooth_normals) {
     loaded.normals.clear();
   }
+  return make(shape, std::move(loaded), name);
+}
+
+std::optional<Shape> ShapeBuilder::make(const ShapeDesc& shape, TriangleMesh loaded,
+                                        const std::string& name) {
   const std::size_t triangles = loaded.triangles.size();
   MeshReport report;
   loaded = place_mesh(std::move(loaded), shape.to_world, report);
@@ -145,20 +153,65 @@ void ShapeBuilder::add_lights(Shape& shape, const Spectrum& emission) {
   light_groups.push_back(std::uint32_t(area_lights.size()) - shape.first_light);
 }
 
+void ShapeBuilder::place(Shape made, std::uint32_t material, const std::optional<Spectrum>& emission) {
+  made.material = material;
+  if (emission && emission->max_over(description_.range) > 0) {
+    add_lights(made, *emission);
+  }
+  geometry.shapes.push_back(std::move(made));
+}
+
+void ShapeBuilder::add_mesh_by_materials(const ShapeDesc& shape, const MeshDesc& mesh) {
+  if (is_ply(mesh.file)) {
+    fail(shape, "\"materials\" of a PLY file: it has none; give a \"material\"");
+  }
+  ObjGroups parts = read_obj_groups(mesh.file);
+  std::vector<std::string> used;
+  for (const ObjGroups::Group& part : parts.groups) used.push_back(part.material);
+  for (const auto& [name, scene_name] : *mesh.materials) {
+    if (std::find(used.begin(), used.end(), name) == used.end()) {
+      fail(shape, fmt::format("\"materials\" has \"{}\", which no face of {} uses{}", name,
+                              mesh.file.string(), suggestion(name, used)));
+    }
+  }
+  for (ObjGroups::Group& part : parts.groups) {
+    MaterialLibraries::Found found;
+    if (const auto it = mesh.materials->find(part.material); it != mesh.materials->end()) {
+      found.index = material_index(shape, it->second);
+    } else if (!part.material.empty()) {
+      found = libraries.find(part.material, parts.libraries, mesh.file);
+    } else if (!shape.material.empty()) {
+      found.index = material_index(shape, shape.material);
+    } else {
+      fail(shape, fmt::format("{} has faces before its first usemtl: give a \"material\" for them",
+                              mesh.file.string()));
+    }
+    if (found.emission && in_group_) {
+      progress_.note(fmt::format("{}: Ke of \"{}\" left out: shapes inside groups cannot emit", shape.where,
+                                 part.material));
+      found.emission.reset();
+    }
+    if (!mesh.smooth_normals) part.mesh.normals.clear();
+    const std::string name = fmt::format("{}, \"{}\"", mesh.file.string(), part.material);
+    if (std::optional<Shape> made = make(shape, std::move(part.mesh), name)) {
+      place(std::move(*made), found.index, found.emission);
+    }
+  }
+}
+
 void ShapeBuilder::add_shape(const ShapeDesc& shape) {
-  const std::uint32_t material = material_index(shape);
+  if (const auto* mesh = std::get_if<MeshDesc>(&shape.kind); mesh != nullptr && mesh->materials) {
+    add_mesh_by_materials(shape, *mesh);
+    return;
+  }
+  const std::uint32_t material = material_index(shape, shape.material);
   std::optional<Shape> made =
       std::visit(Overloaded{[](const InstanceDesc&) { return std::optional<Shape>(); },  // add_instance()
                             [&](const auto& kind) { return make(shape, kind); }},
                  shape.kind);
-  if (!made) {
-    return;
+  if (made) {
+    place(std::move(*made), material, shape.emission);
   }
-  made->material = material;
-  if (shape.emission && shape.emission->max_over(description_.range) > 0) {
-    add_lights(*made, *shape.emission);
-  }
-  geometry.shapes.push_back(std::move(*made));
 }
 
 ShapeRange ShapeBuilder::add_shapes(const std::vector<ShapeDesc>& shapes) {
@@ -193,6 +246,7 @@ void ShapeBuilder::add_instance(const ShapeDesc& shape, const std::string& group
 }
 
 void ShapeBuilder::build() {
+  in_group_ = true;
   for (const GroupDesc& group : description_.groups) {
     for (const ShapeDesc& shape : group.shapes) {
       if (std::holds_alternative<InstanceDesc>(shape.kind) || shape.emission) {
@@ -201,6 +255,7 @@ void ShapeBuilder::build() {
     }
     geometry.groups.push_back(add_shapes(group.shapes));
   }
+  in_group_ = false;
   geometry.top = add_shapes(description_.shapes);
   for (const ShapeDesc& shape : description_.shapes) {
     if (const auto* instance = std::get_if<InstanceDesc>(&shape.kind)) {

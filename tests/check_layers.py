@@ -25,7 +25,7 @@ DOORS = {
     "Embree": (r"embree\d*/", r"renderer/accel_embree\.cpp"),
     "Ceres": (r"ceres/|glog/", r"separation/.+\.cpp"),
     "Eigen": (r"Eigen/|unsupported/Eigen/", r"separation/.+"),
-    "tinyobjloader": (r"tiny_obj_loader", r"renderer/mesh\.cpp"),
+    "tinyobjloader": (r"tiny_obj_loader", r"renderer/obj_file\.cpp"),
     "oneTBB": (r"tbb/|oneapi/", r"(separation|renderer)/.+\.cpp"),
     "Zstandard": (r"zstd", r"materials/packed_table\.cpp"),
     "CLI11": (r"CLI/", r"cli/.+"),

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "renderer/mesh.h"
+#include "renderer/obj_file.h"
 #include "tests/support/ply_writer.h"
 #include "tests/support/render_scenes.h"
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "renderer/obj_file.h"
 
 namespace spectrace {
 namespace {

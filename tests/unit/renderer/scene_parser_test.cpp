@@ -222,6 +222,14 @@ TEST(SceneParser, RefusesShapesThatAreNone) {
   expect_problem(
       R"("shapes": [{"type": "mesh", "material": "clay", "positions": [[0, 0, 0]], "triangles": [[0, 0]]}])",
       "/shapes/0/triangles/0: expected three indices");
+  const auto mesh = [](const std::string& rest) {
+    return R"("shapes": [{"type": "mesh", "file": "meshes/torus.obj", )" + rest + "}]";
+  };
+  expect_problem(mesh(R"("materials": {"gold": "caly"})"),
+                 "/shapes/0/materials/gold: there is no material \"caly\"; did you mean \"clay\"?");
+  expect_problem(mesh(R"("materials": {}, "emission": 2)"), "/shapes/0/emission: \"materials\" leaves it");
+  expect_problem(mesh(R"("smooth_normals": true)"), "/shapes/0: missing required key \"material\"");
+  EXPECT_TRUE(problems(scene_with(mesh(R"("materials": {}, "material": "clay")"))).empty());
   expect_problem(R"("shapes": [{"type": "mesh", "material": "clay"}])", "/shapes/0: a mesh needs a \"file\"");
   expect_problem(
       R"("shapes": [{"type": "instance", "group": "g", "material": "clay"}], "groups": [{"name": "g", "shapes": []}])",

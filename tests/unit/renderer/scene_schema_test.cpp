@@ -125,6 +125,7 @@ Json everything() {
       {"type": "mesh", "material": "coat", "file": "meshes/torus.obj", "smooth_normals": false,
        "transform": [{"scale": 2}, {"rotate": {"axis": [0, 0, 1], "angle_deg": 30}}, {"translate": [1, 2, 3]},
                      {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]},
+      {"type": "mesh", "file": "meshes/torus.obj", "materials": {"material": "clay"}},
       {"type": "instance", "group": "pair", "transform": {"translate": [3, 0, 0]}}],
     "lights": [
       {"type": "environment", "radiance": {"illuminant": "D65", "scale": 0.5}, "scale": 2,
