@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/spectra/cie_tables.h"
+#include "core/spectra/illuminants.h"
 #include "core/spectra/rgb_uplift.h"
 #include "core/spectra/spectrum.h"
 
@@ -91,29 +91,9 @@ MaybeSpectrum parse_file(const JsonValue& json, const JsonValue& column, NumberR
   }
 }
 
-Spectrum d65_spectrum() {
-  std::vector<Float> lambda_nm, values;
-  for (std::size_t i = 0; i < kD65Samples; ++i) {
-    lambda_nm.push_back(static_cast<Float>(kD65MinNm + kD65StepNm * static_cast<int>(i)));
-    values.push_back(static_cast<Float>(kD65[i] / 100));
-  }
-  return TabulatedSpectrum(std::move(lambda_nm), std::move(values));
-}
-
-Spectrum illuminant_a_spectrum() {
-  // CIE 15:2004, eq. 3.1 is Planck's law at 2848 K with c2 = 1.435e-2 m·K; with today's c2 this is the
-  // temperature.
-  BlackbodySpectrum a{static_cast<Float>(2848 * 1.438776877503934 / 1.435), 1};
-  a.scale = 1 / a.at(560);
-  return a;
-}
-
 MaybeSpectrum parse_illuminant(const JsonValue& json) {
-  const std::string name = json.choice("", {"D65", "A", "E"});
-  if (name.empty()) return std::nullopt;
-  if (name == "D65") return d65_spectrum();
-  if (name == "A") return illuminant_a_spectrum();
-  return Spectrum::constant(1);
+  const std::string name = json.choice("", kIlluminantNames);
+  return name.empty() ? MaybeSpectrum() : named_illuminant(name);
 }
 
 MaybeSpectrum parse_sellmeier(const JsonValue& json) {

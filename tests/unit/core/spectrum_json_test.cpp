@@ -126,7 +126,8 @@ TEST(SpectrumJson, MistakesAreNamedAtTheirPlace) {  // hard case H13 among them
       {R"({"sellmeier": {"b": [0, 0, 0], "c_um2": [0, 0, 0]}})", emission,
        "1:21: /s/sellmeier: is a refractive index, which has no meaning here"},
       {R"({"illuminant": "D66"})", emission,
-       "1:22: /s/illuminant: expected one of \"D65\", \"A\", \"E\", got \"D66\"; did you mean \"D65\"?"},
+       "1:22: /s/illuminant: expected one of \"D65\", \"D50\", \"D55\", \"D75\", \"A\", \"E\", "
+       "\"F2\", \"F7\", \"F11\", got \"D66\"; did you mean \"D65\"?"},
       {R"({"blackbody_K": 0})", emission,
        "1:23: /s/blackbody_K: expected a number in (0, 1000000000], got 0"},
       {R"({"rgb": [1, 1, 1], "file": "x"})", reflectance,
