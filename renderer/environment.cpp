@@ -121,36 +121,84 @@ std::vector<double> cell_weights(const std::vector<double>& luminance, int width
   return weights;
 }
 
+void check_radiance(double value, int x, int y, const std::string& file) {
+  if (!std::isfinite(value) || value < 0) {
+    throw InputError(file, fmt::format("pixel ({}, {})", x, y),
+                     fmt::format("radiance must be finite and not negative, got {}", value));
+  }
+}
+
+/// Luminance of a spectrum, linear between `lambda_nm`, is the sum of its values times these.
+std::vector<double> luminance_weights(const std::vector<Float>& lambda_nm) {
+  std::vector<double> weights(lambda_nm.size());
+  std::vector<Float> one(lambda_nm.size());
+  for (std::size_t i = 0; i < lambda_nm.size(); ++i) {
+    one[i] = 1;
+    weights[i] = spectrum_to_xyz(Spectrum(TabulatedSpectrum(lambda_nm, one)))[1];
+    one[i] = 0;
+  }
+  return weights;
+}
+
 }  // namespace
 
-Environment::Environment(Spectrum radiance) : radiance_(std::move(radiance)) {}
-
-Environment::Environment(const Image& image, const std::filesystem::path& file, Spectrum radiance,
-                         const Transform& to_world)
-    : radiance_(std::move(radiance)), width_(image.width), height_(image.height) {
+std::vector<double> Environment::take_rgb(const Image& image, const std::string& file) {
   const std::vector<std::string> rgb_names{"R", "G", "B"};
-  const Image rgb = image.select(rgb_names, file.string());
-  if (width_ < 1 || height_ < 1) {
-    throw InputError(file.string(), "", "is an empty image");
-  }
-  axes_ = {normalize(to_world.vector({1, 0, 0})), normalize(to_world.vector({0, 1, 0})),
-           normalize(to_world.vector({0, 0, 1}))};
+  const Image rgb = image.select(rgb_names, file);
   texels_.reserve(std::size_t(width_) * height_);
   std::vector<double> luminance;
   luminance.reserve(texels_.capacity());
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Rgb value{rgb.at(x, y, 0), rgb.at(x, y, 1), rgb.at(x, y, 2)};
-      for (double channel : value) {
-        if (!std::isfinite(channel) || channel < 0) {
-          throw InputError(file.string(), fmt::format("pixel ({}, {})", x, y),
-                           fmt::format("radiance must be finite and not negative, got {}", channel));
-        }
-      }
+      for (double channel : value) check_radiance(channel, x, y, file);
       texels_.push_back(uplift_emission_fast(value).sigmoid);
       luminance.push_back(rgb_to_xyz(value)[1]);
     }
   }
+  return luminance;
+}
+
+std::vector<double> Environment::take_spectra(SpectralImage spectra, const std::string& file) {
+  spectra_ = std::move(spectra);
+  const std::size_t nodes = spectra_->lambda_nm().size();
+  const std::vector<double> weights = luminance_weights(spectra_->lambda_nm());
+  std::vector<double> luminance, mean(nodes);
+  luminance.reserve(std::size_t(width_) * height_);
+  double sin_sum = 0;
+  for (int y = 0; y < height_; ++y) {
+    const double sin_theta = std::sin(double(kPi) * (y + 0.5) / height_);
+    sin_sum += sin_theta * width_;
+    for (int x = 0; x < width_; ++x) {
+      const float* const values = &spectra_->values()[luminance.size() * nodes];
+      double sum = 0;
+      for (std::size_t i = 0; i < nodes; ++i) {
+        check_radiance(values[i], x, y, file);
+        sum += weights[i] * values[i];
+        mean[i] += sin_theta * values[i];
+      }
+      luminance.push_back(sum);
+    }
+  }
+  std::vector<Float> mean_values;
+  for (double sum : mean) mean_values.push_back(Float(sum / sin_sum));
+  mean_spectrum_.emplace(spectra_->lambda_nm(), std::move(mean_values));
+  return luminance;
+}
+
+Environment::Environment(Spectrum radiance) : radiance_(std::move(radiance)) {}
+
+Environment::Environment(const Image& image, const std::filesystem::path& file, Spectrum radiance,
+                         const Transform& to_world)
+    : radiance_(std::move(radiance)), width_(image.width), height_(image.height) {
+  if (width_ < 1 || height_ < 1) {
+    throw InputError(file.string(), "", "is an empty image");
+  }
+  axes_ = {normalize(to_world.vector({1, 0, 0})), normalize(to_world.vector({0, 1, 0})),
+           normalize(to_world.vector({0, 0, 1}))};
+  std::optional<SpectralImage> spectra = spectral_channels(image, SpectralKind::kRadiance, file.string());
+  const std::vector<double> luminance =
+      spectra ? take_spectra(std::move(*spectra), file.string()) : take_rgb(image, file.string());
   // Quarters of texels follow the bilinear image closely: what shines beside a bright texel is at most 4
   // times what its density promises, against 16 times with whole texels. Beyond 8 million texels that is too
   // much memory.
@@ -176,14 +224,19 @@ SampledSpectrum Environment::radiance(Vec3 direction, const SampledWavelengths& 
   const Float fx = px - Float(x0), fy = py - Float(y0);
   const int xa = (x0 + width_) % width_, xb = (x0 + 1 + width_) % width_;
   const int ya = std::clamp(y0, 0, height_ - 1), yb = std::clamp(y0 + 1, 0, height_ - 1);
-  const SigmoidSpectrum& t00 = texel(xa, ya);
-  const SigmoidSpectrum& t10 = texel(xb, ya);
-  const SigmoidSpectrum& t01 = texel(xa, yb);
-  const SigmoidSpectrum& t11 = texel(xb, yb);
+  const auto texel = [&](int x, int y) { return std::size_t(y) * std::size_t(width_) + std::size_t(x); };
+  const std::size_t t00 = texel(xa, ya), t10 = texel(xb, ya), t01 = texel(xa, yb), t11 = texel(xb, yb);
+  const auto bilinear = [&](const auto& at) {
+    return lerp(lerp(at(t00), at(t10), fx), lerp(at(t01), at(t11), fx), fy);
+  };
   for (int lane = 0; lane < kLanes; ++lane) {
     const Float nm = lambda.lambda_nm(lane);
-    const Float sigmoid = lerp(lerp(t00.at(nm), t10.at(nm), fx), lerp(t01.at(nm), t11.at(nm), fx), fy);
-    result[lane] *= sigmoid * white_at(nm);
+    if (spectra_) {
+      const SpectralImage::Place place = spectra_->place(nm);
+      result[lane] *= bilinear([&](std::size_t t) { return spectra_->at(t, place); });
+    } else {
+      result[lane] *= bilinear([&](std::size_t t) { return texels_[t].at(nm); }) * white_at(nm);
+    }
   }
   return result;
 }
@@ -215,6 +268,7 @@ Float Environment::pdf(Vec3 direction) const {
 }
 
 Float Environment::mean_radiance(Float lambda_nm) const {
+  if (mean_spectrum_) return radiance_.at(lambda_nm) * mean_spectrum_->at(lambda_nm);
   return radiance_.at(lambda_nm) * Float(mean_luminance_) * (is_image() ? white_at(lambda_nm) : 1);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/image/spectral_image.h"
 #include "core/math/vec.h"
 #include "core/spectra/rgb_uplift.h"
 #include "core/spectra/spectrum.h"
@@ -39,8 +40,9 @@ class Environment {
  public:
   /// Constant.
   explicit Environment(Spectrum radiance);
-  /// `radiance` · image, turned by `to_world` (a rotation). Throws InputError where the image has no R, G, B
-  /// or a texel is negative or not finite, naming `file`.
+  /// `radiance` · image, turned by `to_world` (a rotation). The image's spectra (channels "S0.550,000000nm",
+  /// ...) are taken where it has them, else R, G, B. Throws InputError where it has neither or a texel is
+  /// negative or not finite, naming `file`.
   Environment(const Image& image, const std::filesystem::path& file, Spectrum radiance,
               const Transform& to_world);
 
@@ -55,16 +57,18 @@ class Environment {
 
   /// Mean over all directions: for the choice between lights.
   [[nodiscard]] Float mean_radiance(Float lambda_nm) const;
-  [[nodiscard]] bool is_image() const { return !texels_.empty(); }
+  [[nodiscard]] bool is_image() const { return width_ > 0; }
 
  private:
-  [[nodiscard]] const SigmoidSpectrum& texel(int x, int y) const {
-    return texels_[std::size_t(y) * width_ + x];
-  }
+  /// Both fill the texels and return their luminance.
+  std::vector<double> take_rgb(const Image& image, const std::string& file);
+  std::vector<double> take_spectra(SpectralImage spectra, const std::string& file);
 
   Spectrum radiance_;
   int width_ = 0, height_ = 0;
-  std::vector<SigmoidSpectrum> texels_;  // without the illuminant, which is one factor for all
+  std::vector<SigmoidSpectrum> texels_;             // without the illuminant, which is one factor for all
+  std::optional<SpectralImage> spectra_;            // instead of texels_
+  std::optional<TabulatedSpectrum> mean_spectrum_;  // of spectra_, over all directions
   double mean_luminance_ = 1;
   Frame axes_;  // the image's x, y, z in the world
   GridDensity density_;

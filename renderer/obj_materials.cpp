@@ -28,7 +28,7 @@ Image rgb_image(const std::filesystem::path& file, Image image) {
 /// map_Kd takes the place of Kd: nearly every exporter writes both and means
 /// the image.
 Texture diffuse_texture(const MtlMaterial& mtl) {
-  if (!mtl.diffuse_map.empty()) return BitmapTexture(rgb_image(mtl.diffuse_map, read_image(mtl.diffuse_map)));
+  if (!mtl.diffuse_map.empty()) return image_texture(read_image(mtl.diffuse_map), mtl.diffuse_map.string());
   return Spectrum(uplift_reflectance(mtl.diffuse.value_or(Rgb{})));
 }
 

@@ -81,10 +81,16 @@ void note_albedo(const std::string& name, const Material& material, Progress& pr
   });
 }
 
-Environment build_environment(const EnvironmentDesc& light) {
+Environment build_environment(const EnvironmentDesc& light, Progress& progress) {
   const Spectrum radiance = light.radiance.scaled(light.scale);
-  return light.file.empty() ? Environment(radiance)
-                            : Environment(read_image(light.file), light.file, radiance, light.to_world);
+  if (light.file.empty()) return Environment(radiance);
+  const Image image = read_image(light.file);
+  if (has_spectral_channels(image, SpectralKind::kRadiance)) {
+    if (const auto remark = check_emissive_units(read_metadata(light.file), light.file.string())) {
+      progress.note(*remark);
+    }
+  }
+  return {image, light.file, radiance, light.to_world};
 }
 
 /// 1 - cosine, in double: exact for narrow cones.
@@ -108,7 +114,7 @@ struct DistantLights {
   std::optional<Environment> environment;
 };
 
-DistantLights build_lights(const SceneDesc& scene) {
+DistantLights build_lights(const SceneDesc& scene, Progress& progress) {
   DistantLights result;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const auto fail = [&](const char* problem) {
@@ -127,7 +133,7 @@ DistantLights build_lights(const SceneDesc& scene) {
                    },
                    [&](const EnvironmentDesc& environment) {
                      if (result.environment) fail("a scene has at most one environment");
-                     result.environment = build_environment(environment);
+                     result.environment = build_environment(environment, progress);
                    }},
         scene.lights[i]);
   }
@@ -153,7 +159,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   ShapeBuilder shapes(description, progress);
   shapes.build();
   for (const MaterialDesc& material : shapes.libraries.materials) add_material(material);
-  DistantLights distant = build_lights(description);
+  DistantLights distant = build_lights(description, progress);
   Accel accel(shapes.geometry);
   const auto uniform = WavelengthDistribution::uniform(description.range);
   const auto observer =

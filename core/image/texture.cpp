@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/image/bilinear.h"
+#include "core/image/spectral_image.h"
 #include "core/spectra/rgb_uplift.h"
 
 namespace spectrace {
@@ -38,8 +39,7 @@ Texture parse_bitmap(const JsonValue& json, const Spectrum& fallback) {
   const std::filesystem::path file = json.path();
   if (file.empty()) return fallback;
   try {
-    const std::array<std::string, 3> rgb{"R", "G", "B"};
-    return BitmapTexture(read_image(file).select(rgb, file.string()));
+    return image_texture(read_image(file), file.string());
   } catch (const InputError& e) {
     json.error(e.diagnostics().front().text());
     return fallback;
@@ -66,15 +66,45 @@ Rgb BitmapTexture::rgb_at(Vec2 uv) const {
   return rgb;
 }
 
+SpectralTexture::SpectralTexture(SpectralImage image) {
+  for (float& x : image.values()) x = x > 0 ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
+  image_ = std::make_shared<const SpectralImage>(std::move(image));
+}
+
+SampledSpectrum SpectralTexture::sample(const SampledWavelengths& lambda, Vec2 uv) const {
+  const Bilinear texels(uv, image_->width(), image_->height());
+  const auto width = static_cast<std::size_t>(image_->width());
+  SampledSpectrum r;
+  for (int i = 0; i < kLanes; ++i) {
+    const SpectralImage::Place place = image_->place(lambda.lambda_nm(i));
+    r[i] = static_cast<Float>(texels.mean([&](std::size_t row, std::size_t column) {
+      return double(image_->at(row * width + column, place));
+    }));
+  }
+  return r;
+}
+
 SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv) const {
   if (const auto* spectrum = std::get_if<Spectrum>(&v_)) return spectrum->sample(lambda);
   if (const auto* board = std::get_if<Checkerboard>(&v_)) {
     return (is_odd(*board, uv) ? board->odd : board->even).sample(lambda);
   }
+  if (const auto* spectra = std::get_if<SpectralTexture>(&v_)) return spectra->sample(lambda, uv);
   const SigmoidSpectrum s = uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv));
   SampledSpectrum r;
   for (int i = 0; i < kLanes; ++i) r[i] = s.at(lambda.lambda_nm(i));
   return r;
+}
+
+Texture image_texture(const Image& image, const std::string& file) {
+  if (std::optional<SpectralImage> spectra = spectral_channels(image, SpectralKind::kReflectance, file)) {
+    return SpectralTexture(std::move(*spectra));
+  }
+  const std::array<std::string, 3> rgb{"R", "G", "B"};
+  if (!image.find_channel("R") && has_spectral_channels(image, SpectralKind::kRadiance)) {
+    throw InputError(file, "", "holds radiance (channels \"S0.\"), a texture needs reflectance (\"T.\")");
+  }
+  return BitmapTexture(image.select(rgb, file));
 }
 
 Texture parse_texture(const JsonValue& json, const Spectrum& fallback) {

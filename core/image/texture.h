@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reflectance over a surface: one spectrum, a checkerboard of two, or an RGB image uplifted per lookup.
+// A reflectance over a surface: one spectrum, a checkerboard of two, an RGB image uplifted per
+// lookup, or an image of spectra.
 #pragma once
 
 #include <filesystem>
@@ -31,19 +32,37 @@ class BitmapTexture {
   std::shared_ptr<const std::vector<float>> rgb_;
 };
 
+class SpectralImage;
+
+/// A spectrum a texel, read at a path's wavelengths; bilinear, repeating; v = 0 at the bottom row.
+class SpectralTexture {
+ public:
+  /// Values clamped to [0, 1]; NaN becomes 0.
+  explicit SpectralTexture(SpectralImage image);
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv) const;
+
+ private:
+  std::shared_ptr<const SpectralImage> image_;
+};
+
 class Texture {
  public:
   Texture() : v_(Spectrum::constant(0)) {}
   Texture(Spectrum s) : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor): a spectrum is a texture
-  Texture(Checkerboard c) : v_(std::move(c)) {}   // NOLINT(google-explicit-constructor)
-  Texture(BitmapTexture b) : v_(std::move(b)) {}  // NOLINT(google-explicit-constructor)
+  Texture(Checkerboard c) : v_(std::move(c)) {}     // NOLINT(google-explicit-constructor)
+  Texture(BitmapTexture b) : v_(std::move(b)) {}    // NOLINT(google-explicit-constructor)
+  Texture(SpectralTexture s) : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv) const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Spectrum>(v_); }
 
  private:
-  std::variant<Spectrum, Checkerboard, BitmapTexture> v_;
+  std::variant<Spectrum, Checkerboard, BitmapTexture, SpectralTexture> v_;
 };
+
+/// An image's spectra of reflectance (channels "T.550,000000nm", ...) where it has them, else its R, G, B.
+/// Throws InputError naming `file` where it has neither.
+Texture image_texture(const Image& image, const std::string& file);
 
 /// A spectrum (parse_spectrum, kReflectance), {"checkerboard": {"even": .., "odd": .., "repeat": [u, v]}} or
 /// {"bitmap": "file.png"}. Problems are recorded in the document.
