@@ -166,7 +166,8 @@ Header read_header(Source& source) {
     if (words[0] == "element") {
       header.elements.push_back(parse_element(words, header, source));
     } else if (words[0] == "property") {
-      header.elements.back().properties.push_back(parse_property(words, header, source));
+      Property property = parse_property(words, header, source);  // throws where there is no element yet
+      header.elements.back().properties.push_back(std::move(property));
     } else {
       source.fail_at_header_line(
           fmt::format("expected element, property, comment or end_header, got \"{}\"", words[0]));

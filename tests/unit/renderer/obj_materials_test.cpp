@@ -81,6 +81,22 @@ TEST_F(ObjMaterials, EveryWrongLineIsNamed) {
           "line 11: map_Kd: there is no file \"" + (folder_ / "no.png").string() + "\""}));
 }
 
+TEST_F(ObjMaterials, NoDamageGoesFurtherThanAMessage) {
+  const std::string text =
+      "newmtl a\nKd 0.5 0.25 1\nmap_Kd -s 1 1 1 one.mtl\nTr 0.5\nd -halo 1\nillum 7\nNi 1.5\n";
+  write("one.mtl", "");
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    for (char by : {' ', '\n', '\0', '-', '9', '\xff'}) {
+      std::string damaged = text;
+      damaged[i] = by;
+      try {
+        (void)read_mtl(write("damaged.mtl", damaged));
+      } catch (const InputError&) {  // said so: all that is asked for
+      }
+    }
+  }
+}
+
 TEST_F(ObjMaterials, StatementsBecomeMaterials) {
   EXPECT_TRUE(std::holds_alternative<Lambert>(to_material(one("Kd 0.5 0.5 0.5")).kind));
   EXPECT_TRUE(std::holds_alternative<Lambert>(to_material(one("Kd 1 0 0\nKs 0 0 0\nNs 3")).kind));
@@ -112,6 +128,13 @@ TEST_F(ObjMaterials, KdAndKsAreReflectancesThatAdd) {
   EXPECT_NEAR(lobes("Kd 1 1 1\nKs 1 1 1\nNs 10").first, 0.5, 2e-3);  // no more than there is
   EXPECT_NEAR(lobes("Kd 1 1 1\nKs 1 1 1\nNs 10").second, 0.5, 2e-3);
   EXPECT_NEAR(lobes("Kd 0 0 0\nKs 0.25 0.25 0.25\nNs 10").second, 0.25, 2e-3);
+  // Scaled down a colour stays what it is.
+  const auto red = std::get<Glossy>(to_material(one("Kd 1 0.25 0.25\nKs 1 1 1\nNs 10")).kind);
+  const SigmoidSpectrum colour = uplift_reflectance({1, 0.25, 0.25});
+  const SampledWavelengths lambda = WavelengthDistribution::uniform({}).sample(Float(0.3));
+  for (int i = 0; i < kLanes; ++i) {
+    EXPECT_NEAR(red.reflectance.sample(lambda, {})[i], colour.at(lambda.lambda_nm(i)), 1e-6);
+  }
   const auto glossy = std::get<Glossy>(to_material(one("Kd 1 1 1\nKs 1 1 1\nNs 198")).kind);
   EXPECT_NEAR(glossy.ggx.alpha_x, 0.1, 1e-6);
 }
