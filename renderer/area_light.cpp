@@ -92,6 +92,25 @@ double area(const Quad& quad) { return length(quad.scaled_normal()); }
 double area(const Disk& disk) { return length(disk.scaled_normal()); }
 double area(const TriangleLight& triangle) { return length(scaled_normal(triangle)); }
 
+LightBounds bounds_of(const Sphere& sphere, double radiance) {
+  return bounds_around(bounds(Shape{.geometry = sphere}), double(sphere.radius),
+                       radiance * kPi64 * sqr(double(sphere.radius)));
+}
+LightBounds flat_bounds(const Box& box, Vec3 scaled_normal, double radiance) {
+  return bounds_facing(box, detail::normalize_any(scaled_normal), radiance * double(length(scaled_normal)));
+}
+LightBounds bounds_of(const Quad& quad, double radiance) {
+  return flat_bounds(bounds(Shape{.geometry = quad}), quad.scaled_normal(), radiance);
+}
+LightBounds bounds_of(const Disk& disk, double radiance) {
+  return flat_bounds(bounds(Shape{.geometry = disk}), disk.scaled_normal(), radiance);
+}
+LightBounds bounds_of(const TriangleLight& t, double radiance) {
+  Box box;
+  for (Vec3 p : {t.p0, t.p0 + t.edge_1, t.p0 + t.edge_2}) box.add(p);
+  return flat_bounds(box, scaled_normal(t), radiance);
+}
+
 }  // namespace
 
 std::optional<LightPoint> sample_light(const LightShape& light, Vec3 from, Vec2 u) {
@@ -113,6 +132,10 @@ Float light_pdf(const LightShape& light, Vec3 from, Vec3 wi, Vec3 position, Vec3
 
 double light_area(const LightShape& light) {
   return std::visit([](const auto& shape) { return area(shape); }, light);
+}
+
+LightBounds light_bounds(const LightShape& light, double radiance) {
+  return std::visit([&](const auto& shape) { return bounds_of(shape, radiance); }, light);
 }
 
 }  // namespace spectrace

@@ -7,6 +7,7 @@
 
 #include "core/math/vec.h"
 #include "renderer/geometry.h"
+#include "renderer/light_bounds.h"
 
 namespace spectrace {
 
@@ -31,5 +32,8 @@ struct LightPoint {
 [[nodiscard]] Float light_pdf(const LightShape& light, Vec3 from, Vec3 wi, Vec3 position, Vec3 normal);
 
 [[nodiscard]] double light_area(const LightShape& light);
+
+/// What LightTree knows of it; `radiance` [W·m⁻²·sr⁻¹·nm⁻¹].
+[[nodiscard]] LightBounds light_bounds(const LightShape& light, double radiance);
 
 }  // namespace spectrace

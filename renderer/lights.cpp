@@ -13,6 +13,10 @@ namespace spectrace {
 
 namespace {
 
+/// What the table keeps: 1 / the number of lights, as far as this. The fewer there are the less an estimate
+/// can gain, and it knows nothing of shadows (ADR 0011).
+constexpr Float kLeastTableShare = Float(0.125);
+
 /// Mean over wavelengths as paths draw them.
 double mean_over(const WavelengthDistribution& wavelengths, const std::function<double(Float)>& at) {
   constexpr int kSteps = 64;  // by quantiles: ample for a choice that need not be exact
@@ -52,6 +56,20 @@ std::optional<LightSample> sample_one(const SpotLight& spot, Vec3 from, const Sa
 
 std::optional<LightSample> sample_one(const DirectionalLight& sun, Vec3, const SampledWavelengths& lambda) {
   return LightSample{sun.to_light, std::nullopt, sun.irradiance.sample(lambda), 1};
+}
+
+Box box_at(Vec3 position) {
+  Box box;
+  box.add(position);
+  return box;
+}
+LightBounds bounds_of(const PointLight& light, double intensity) {
+  return bounds_around(box_at(light.position), 0, intensity);
+}
+/// Estimates of what faces a way end at a right angle to it: wider spots count as points.
+LightBounds bounds_of(const SpotLight& light, double intensity) {
+  const Box box = box_at(light.position);
+  return light.no_drop < 1 ? bounds_facing(box, light.axis, intensity) : bounds_around(box, 0, intensity);
 }
 
 /// One thing that lights: some consecutive lights and their powers.
@@ -122,6 +140,54 @@ Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& gr
   if (!(sum > 0)) {
     cumulative_.clear();
   }
+  const auto count = std::count_if(probability_.begin(), probability_.end(), [](Float p) { return p > 0; });
+  table_share_ = std::max(kLeastTableShare, count > 0 ? 1 / Float(count) : 1);
+  if (table_share_ < 1) {
+    build_tree(observer);
+    add_distant(observer);
+  }
+}
+
+void Lights::build_tree(const WavelengthDistribution& observer) {
+  std::vector<double> radiances;
+  for (const Spectrum& emission : emissions_) radiances.push_back(mean_of(observer, emission));
+  std::vector<LightTree::Leaf> leaves;
+  const auto add = [&](std::size_t light, const LightBounds& bounds) {
+    if (bounds.intensity() > 0) leaves.push_back({std::uint32_t(light), bounds});
+  };
+  for (std::size_t i = 0; i < area_.size(); ++i) {
+    add(i, light_bounds(area_[i].shape, radiances[area_[i].emission]));
+  }
+  for (std::size_t i = 0; i < delta_.size(); ++i) {
+    std::visit(Overloaded{[&](const DirectionalLight&) {},
+                          [&](const auto& light) {
+                            add(area_.size() + i, bounds_of(light, mean_of(observer, light.intensity)));
+                          }},
+               delta_[i]);
+  }
+  tree_ = LightTree(std::move(leaves), std::uint32_t(probability_.size()));
+}
+
+void Lights::add_distant(const WavelengthDistribution& observer) {
+  std::vector<double> irradiances;
+  for (std::size_t i = 0; i < delta_.size(); ++i) {
+    if (const auto* sun = std::get_if<DirectionalLight>(&delta_[i])) {
+      distant_.push_back({std::uint32_t(area_.size() + i), sun->to_light});
+      irradiances.push_back(mean_of(observer, sun->irradiance));
+    }
+  }
+  if (environment_) {
+    distant_.push_back({environment_index(), {}});
+    irradiances.push_back(
+        kPi64 * mean_over(observer, [&](Float nm) { return double(environment_->mean_radiance(nm)); }));
+  }
+  if (distant_.empty()) return;
+  const double unit =
+      tree_.empty() ? *std::max_element(irradiances.begin(), irradiances.end()) : tree_.unit();
+  for (std::size_t i = 0; i < distant_.size(); ++i) {
+    constexpr double kLargest = 1e30;  // a sum of many is finite
+    distant_[i].irradiance = irradiances[i] > 0 ? float(std::min(irradiances[i] / unit, kLargest)) : 0;
+  }
 }
 
 double Lights::power_of(const DeltaLight& light, double lambda_nm) const {
@@ -150,19 +216,6 @@ double Lights::power(double lambda_nm) const {
     sum += kPi64 * emission_area_[i] * double(emissions_[i].at(Float(lambda_nm)));
   }
   return sum;
-}
-
-std::optional<Lights::Choice> Lights::choose(Float u) const {
-  if (cumulative_.empty()) {
-    return std::nullopt;
-  }
-  const double target = double(u) * cumulative_.back();
-  const auto above = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
-  const auto index = std::min<std::size_t>(above - cumulative_.begin(), cumulative_.size() - 1);
-  if (!(probability_[index] > 0)) {
-    return std::nullopt;  // a share that Float cannot hold
-  }
-  return Choice{std::uint32_t(index), probability_[index]};
 }
 
 std::optional<LightSample> Lights::sample_area(std::uint32_t light, Vec3 from, Vec2 u,

@@ -9,6 +9,7 @@
 #include "core/spectra/spectrum.h"
 #include "renderer/area_light.h"
 #include "renderer/environment.h"
+#include "renderer/light_tree.h"
 
 namespace spectrace {
 
@@ -63,14 +64,13 @@ class Lights {
          std::vector<Spectrum> emissions, std::vector<DeltaLight> delta,
          std::optional<Environment> environment, const WavelengthDistribution& observer, Float scene_radius);
 
-  struct Choice {
-    std::uint32_t light = 0;
-    Float probability = 0;
-  };
-  /// Half of the choice is equal between emitters, so that no light starves; half follows their power. `u` in
-  /// [0, 1). nullopt where there is no light.
-  [[nodiscard]] std::optional<Choice> choose(Float u) const;
-  [[nodiscard]] Float probability(std::uint32_t light) const { return probability_[light]; }
+  using Choice = LightTree::Choice;
+  /// By what each light is estimated to send to the receiver, and for a share by a table that knows no place:
+  /// half of that equal between emitters, so that no light starves, half by their power. `u` in [0, 1).
+  /// Nothing where there is no light, or none that the number leads to can light the receiver.
+  [[nodiscard]] std::optional<Choice> choose(const Receiver& receiver, Float u) const;
+  /// Of choose() returning `light`: the same bits. Above 0 for all lights with power.
+  [[nodiscard]] Float probability(std::uint32_t light, const Receiver& receiver) const;
 
   /// Of all lights [W/nm], distant ones by what of them the scene catches.
   [[nodiscard]] double power(double lambda_nm) const;
@@ -98,6 +98,21 @@ class Lights {
   [[nodiscard]] std::size_t delta_count() const { return delta_.size(); }
 
  private:
+  /// A light without a place.
+  struct Distant {
+    std::uint32_t light = 0;
+    Vec3 to_light;         // zero: from all around
+    float irradiance = 0;  // on a surface that faces it, in the tree's unit
+  };
+  void build_tree(const WavelengthDistribution& observer);
+  void add_distant(const WavelengthDistribution& observer);
+  [[nodiscard]] std::optional<std::uint32_t> choose_from_table(Float u) const;
+  [[nodiscard]] Choice choose_by_estimate(const Receiver& receiver, Float u) const;
+  /// All that is estimated to reach a receiver; `cut` of the tree.
+  [[nodiscard]] Float total(const Receiver& receiver, const LightTree::Cut& cut) const;
+  [[nodiscard]] Float joint(Float table, Float estimate) const;
+  [[nodiscard]] Float estimate_share(std::uint32_t light, const Receiver& receiver) const;
+
   [[nodiscard]] double power_of(const DeltaLight& light, double lambda_nm) const;
   [[nodiscard]] double power_of_environment(double lambda_nm) const;
 
@@ -107,8 +122,11 @@ class Lights {
   std::optional<Environment> environment_;
   std::vector<double> emission_area_;  // by emission
   double scene_disk_ = 0;              // what the scene shows a distant light
-  std::vector<Float> probability_;     // by light
+  std::vector<Float> probability_;     // of the table, by light
   std::vector<double> cumulative_;     // by light; last 1
+  Float table_share_ = 1;
+  LightTree tree_;  // all lights with a place
+  std::vector<Distant> distant_;
 };
 
 }  // namespace spectrace

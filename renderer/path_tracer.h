@@ -69,7 +69,7 @@ class PathTracer {
       if (!environment) return;
       Float weight = 1;
       if (!last_was_delta_) {
-        const Float choice = scene_.lights.probability(scene_.lights.environment_index());
+        const Float choice = scene_.lights.probability(scene_.lights.environment_index(), last_receiver_);
         weight = bsdf_mis_weight(environment->pdf(direction) * choice);
       }
       add(beta_ * environment->radiance(direction, lambda_) * weight, Layer::kBackground);
@@ -81,9 +81,9 @@ class PathTracer {
       if (point.light == kNone || !(dot(direction, point.normal_g) < 0)) return;
       Float weight = 1;
       if (!last_was_delta_) {
-        const Float pdf = light_pdf(scene_.lights.shape(point.light), last_position_, direction,
+        const Float pdf = light_pdf(scene_.lights.shape(point.light), last_receiver_.position, direction,
                                     point.position, point.normal_g);
-        weight = bsdf_mis_weight(pdf * scene_.lights.probability(point.light));
+        weight = bsdf_mis_weight(pdf * scene_.lights.probability(point.light, last_receiver_));
       }
       add(beta_ * scene_.lights.emission(point.light, lambda_) * weight, Layer::kEmission);
     }
@@ -194,9 +194,18 @@ class PathTracer {
     return (dot(wi_world, vertex.point.normal_g) > 0) == (wi_local.z > 0);
   }
 
+  /// What lights are chosen for: the same for the choice and for the weight of light met by chance.
+  static Receiver receiver(const Vertex& vertex) {
+    Receiver receiver{vertex.point.position, vertex.frame.n};
+    if constexpr (kFeatures.transmission || kFeatures.nested) {
+      if (keeps_sides(vertex.material)) receiver.normal = {};
+    }
+    return receiver;
+  }
+
   void sample_lights(const Vertex& vertex) {
     const std::optional<Lights::Choice> choice =
-        scene_.lights.choose(sampler_.get1d(vertex_, VertexDimension::kLightChoice));
+        scene_.lights.choose(receiver(vertex), sampler_.get1d(vertex_, VertexDimension::kLightChoice));
     if (!choice) return;
     bool is_delta_light = true;
     const std::optional<LightSample> light = sample_light_source(vertex, choice->light, is_delta_light);
@@ -328,7 +337,7 @@ class PathTracer {
     }
     last_was_delta_ = s->is_delta;
     last_pdf_ = s->pdf;
-    last_position_ = vertex.point.position;
+    last_receiver_ = receiver(vertex);
     ray = {ray_origin(vertex.point, wi), wi};
     ++depth_;
     return survives();
@@ -371,7 +380,7 @@ class PathTracer {
   LobeShares share_;            // of everything that arrives from behind that hit
   bool last_was_delta_ = true;  // the camera counts as one: no light sample competes
   Float last_pdf_ = 0;
-  Vec3 last_position_;
+  Receiver last_receiver_;
 };
 
 }  // namespace spectrace

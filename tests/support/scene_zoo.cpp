@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/scene_zoo.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "materials/measured_tables.h"
@@ -33,6 +34,24 @@ MaterialDesc mirror(const std::string& name) {
 }
 MaterialDesc glass(const std::string& name, Spectrum eta) {
   return {.name = name, .where = "", .kind = Dielectric{std::move(eta)}};
+}
+
+/// Lamps of every kind and both ways up around a ball, of glass at that: more than a node of the light tree
+/// has.
+void add_many_lights(SceneDesc& scene) {
+  for (int i = 0; i < 24; ++i) {
+    const Float phi = Float(i), r = 2 + Float(i % 5), z = Float(0.3) + Float(i % 7) / 2;
+    const Vec3 at{r * std::cos(phi), r * std::sin(phi), z};
+    if (i % 3 == 0) {
+      scene.shapes.push_back(emitting(sphere(at, Float(0.15), "black"), 20));
+    } else if (i % 3 == 1) {
+      const Vec3 down{0, Float(0.3), 0}, across{Float(0.3), 0, 0};
+      scene.shapes.push_back(
+          emitting(i % 2 == 0 ? quad(at, down, across, "black") : quad(at, across, down, "black"), 20));
+    } else {
+      scene.lights.emplace_back(PointLightDesc{at, Spectrum::constant(Float(0.3))});
+    }
+  }
 }
 
 /// A ball on a floor, seen from the side.
@@ -185,6 +204,12 @@ std::vector<NamedScene> scene_zoo() {
   zoo.back().scene.shapes[1] = moved(disk({0, 0, 0}, {0, -1, 1}, 1, "ball"),
                                      translation({0, 0, 1}).compose(scaling({Float(1.5), 1, 1})));
   zoo.back().scene.shapes.push_back(emitting(disk({-1, -1, 4}, {1, 1, -4}, 1, "black"), 6));
+  zoo.push_back({"many lights", ball_scene(lambert("ball", Float(0.5)), lambert("floor", Float(0.5)))});
+  add_many_lights(zoo.back().scene);
+  zoo.push_back(
+      {"many lights and sky around glass", ball_scene(glass("ball", kBk7), lambert("floor", Float(0.5)))});
+  add_many_lights(zoo.back().scene);
+  zoo.back().scene.lights.emplace_back(sky(Float(0.1)));
   zoo.push_back({"mixed and bumpy ball behind a masked pane", nested_scene()});
   zoo.push_back({"instances", instance_scene()});
   zoo.push_back({"measured ball", ball_scene(measured("ball"), lambert("floor", Float(0.4)))});

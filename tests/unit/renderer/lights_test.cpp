@@ -152,19 +152,21 @@ TEST(Lights, ChoiceFavoursPowerAndStarvesNone) {
   std::vector<Lights::AreaLight> area{{Sphere{{0, 0, 0}, 1}, 0}, {Sphere{{0, 0, 9}, 1}, 1}};
   const Lights lights(area, {1, 1}, {Spectrum::constant(Float(1e10)), Spectrum::constant(Float(1e-10))},
                       {PointLight{{0, 0, 0}, Spectrum::constant(0)}}, std::nullopt, wavelengths, 10);
-  EXPECT_NEAR(lights.probability(0), 0.75, 1e-6);
-  EXPECT_NEAR(lights.probability(1), 0.25, 1e-6);
-  EXPECT_EQ(lights.probability(2), 0);  // a lamp that is off
+  // Of two lights the table, 0.75 and 0.25 by power, keeps half; the estimates see the first alone.
+  const Receiver receiver{{0, 0, 5}, {}};
+  EXPECT_NEAR(lights.probability(0, receiver), 0.875, 1e-6);
+  EXPECT_NEAR(lights.probability(1, receiver), 0.125, 1e-6);
+  EXPECT_EQ(lights.probability(2, receiver), 0);  // a lamp that is off
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform;
   int count[3] = {0, 0, 0};
   for (int i = 0; i < 20000; ++i) {
-    const auto choice = lights.choose(std::min(Float(uniform(random)), kOneMinusEpsilon));
+    const auto choice = lights.choose(receiver, std::min(Float(uniform(random)), kOneMinusEpsilon));
     ASSERT_TRUE(choice);
-    EXPECT_EQ(choice->probability, lights.probability(choice->light));
+    EXPECT_EQ(choice->probability, lights.probability(choice->light, receiver));
     ++count[choice->light];
   }
-  EXPECT_NEAR(count[0] / 20000.0, 0.75, 0.013);  // 4 standard errors
+  EXPECT_NEAR(count[0] / 20000.0, 0.875, 0.01);  // 4 standard errors
   EXPECT_EQ(count[2], 0);
 }
 
@@ -227,7 +229,7 @@ TEST(SpotLight, LightsAPointWithItsIntensityByDistanceSquared) {
   EXPECT_FALSE(lights.sample_delta(0, {0, 0, 2}, lambda));                     // at the light itself
 }
 
-TEST(Lights, NoneMeansNoChoice) { EXPECT_FALSE(Lights().choose(Float(0.5))); }
+TEST(Lights, NoneMeansNoChoice) { EXPECT_FALSE(Lights().choose({}, Float(0.5))); }
 
 TEST(GridDensity, SamplesAsItsPdfSays) {
   const GridDensity density(3, 2, {1, 0, 3, 0, 0, 4});
