@@ -33,19 +33,23 @@ class AnalyticBrdf {
 
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
-  /// By the cosine, or by the GGX lobe of the mean roughness.
+  /// By the cosine, or by the GGX lobe of the mean roughness: chosen by the energy expected of either at wo,
+  /// averaged over the lanes.
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
 
  private:
   [[nodiscard]] SampledSpectrum specular(Vec3 wo, Vec3 wi, const SpectralAxis::Lookup& lookup) const;
-  [[nodiscard]] Float pdf(Vec3 wo, Vec3 wi) const;
+  /// Of the samples, for the specular lobe; 0 where there is none.
+  [[nodiscard]] Float specular_share(Vec3 wo, const SpectralAxis::Lookup& lookup) const;
+  [[nodiscard]] Float pdf(Vec3 wo, Vec3 wi, Float share) const;
 
   SpectralAxis axis_;
   std::shared_ptr<const std::vector<AnalyticParameters>> at_;  // [axis]
   std::vector<float> albedo_d_;                                // [axis]
   Ggx lobe_;
-  Float specular_share_ = 0;  // of the samples
+  std::vector<float> rho_0_, rho_0_f_0_;  // [axis]
+  bool is_specular_ = false;
 };
 
 static_assert(Bsdf<AnalyticBrdf>);
