@@ -11,7 +11,10 @@
 #endif
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,22 +38,6 @@ RTCRay embree_ray(const Ray& ray) {
   return r;
 }
 
-/// The first crossing within the ray's interval. tnear itself is excluded.
-std::optional<float> sphere_hit(const RTCRay& r, const Sphere& sphere) {
-  const Ray ray{{Float(r.org_x), Float(r.org_y), Float(r.org_z)},
-                {Float(r.dir_x), Float(r.dir_y), Float(r.dir_z)}};
-  const std::optional<SphereCrossings> crossings = intersect_sphere(sphere, ray);
-  if (!crossings) {
-    return std::nullopt;
-  }
-  for (double t : {crossings->near, crossings->far}) {
-    if (t > double(r.tnear) && t < double(r.tfar)) {
-      return float(t);
-    }
-  }
-  return std::nullopt;
-}
-
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {
   const Sphere& s = *static_cast<const Sphere*>(args->geometryUserPtr);
   // Outwards by some rounding steps of centre + radius, so that the box holds the sphere.
@@ -63,33 +50,6 @@ void sphere_bounds(const RTCBoundsFunctionArguments* args) {
   b.upper_x = float(s.center.x + s.radius) + margin;
   b.upper_y = float(s.center.y + s.radius) + margin;
   b.upper_z = float(s.center.z + s.radius) + margin;
-}
-
-void sphere_intersect(const RTCIntersectFunctionNArguments* args) {
-  if (args->valid[0] == 0) {  // queries here are single rays: N == 1
-    return;
-  }
-  const auto* sphere = static_cast<const Sphere*>(args->geometryUserPtr);
-  auto* rayhit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-  if (const std::optional<float> t = sphere_hit(rayhit->ray, *sphere)) {
-    rayhit->ray.tfar = *t;
-    rayhit->hit.u = 0;
-    rayhit->hit.v = 0;
-    rayhit->hit.geomID = args->geomID;
-    rayhit->hit.primID = args->primID;
-    rayhit->hit.instID[0] = args->context->instID[0];
-  }
-}
-
-void sphere_occluded(const RTCOccludedFunctionNArguments* args) {
-  if (args->valid[0] == 0) {
-    return;
-  }
-  const auto* sphere = static_cast<const Sphere*>(args->geometryUserPtr);
-  auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-  if (sphere_hit(*ray, *sphere)) {
-    ray->tfar = -std::numeric_limits<float>::infinity();
-  }
 }
 
 void disk_bounds(const RTCBoundsFunctionArguments* args) {
@@ -106,35 +66,62 @@ void disk_bounds(const RTCBoundsFunctionArguments* args) {
   b.upper_z = float(disk.center.z + half.z) + margin;
 }
 
-std::optional<DiskCrossing> disk_hit(const RTCRay& r, const Disk& disk) {
-  const Ray ray{{Float(r.org_x), Float(r.org_y), Float(r.org_z)},
-                {Float(r.dir_x), Float(r.dir_y), Float(r.dir_z)}};
+/// What a primitive of ours tells Embree of a crossing.
+struct UserHit {
+  float t = 0, u = 0, v = 0;
+};
+
+/// The first crossing with t in (near, far). u: what is left of t beyond its float (hard case H15).
+std::optional<UserHit> user_hit(const Sphere& sphere, const Ray& ray, float near, float far) {
+  const std::optional<SphereCrossings> crossings = intersect_sphere(sphere, ray);
+  if (!crossings) return std::nullopt;
+  for (double t : {crossings->near, crossings->far}) {
+    if (t > double(near) && t < double(far)) return UserHit{float(t), float(t - double(float(t))), 0};
+  }
+  return std::nullopt;
+}
+
+std::optional<UserHit> user_hit(const Disk& disk, const Ray& ray, float near, float far) {
   const std::optional<DiskCrossing> crossing = intersect_disk(disk, ray);
-  return crossing && crossing->t > double(r.tnear) && crossing->t < double(r.tfar) ? crossing : std::nullopt;
+  if (!crossing || !(crossing->t > double(near) && crossing->t < double(far))) return std::nullopt;
+  return UserHit{float(crossing->t), float(crossing->x), float(crossing->y)};
 }
 
-void disk_intersect(const RTCIntersectFunctionNArguments* args) {
-  if (args->valid[0] == 0) {
-    return;
-  }
-  auto* rayhit = reinterpret_cast<RTCRayHit*>(args->rayhit);
-  if (const auto hit = disk_hit(rayhit->ray, *static_cast<const Disk*>(args->geometryUserPtr))) {
-    rayhit->ray.tfar = float(hit->t);
-    rayhit->hit.u = float(hit->x);
-    rayhit->hit.v = float(hit->y);
-    rayhit->hit.geomID = args->geomID;
-    rayhit->hit.primID = args->primID;
-    rayhit->hit.instID[0] = args->context->instID[0];
+Ray ray_of(RTCRayN* rays, unsigned n, unsigned i) {
+  return {
+      {Float(RTCRayN_org_x(rays, n, i)), Float(RTCRayN_org_y(rays, n, i)), Float(RTCRayN_org_z(rays, n, i))},
+      {Float(RTCRayN_dir_x(rays, n, i)), Float(RTCRayN_dir_y(rays, n, i)), Float(RTCRayN_dir_z(rays, n, i))}};
+}
+
+template <typename Primitive>
+void intersect_user(const RTCIntersectFunctionNArguments* args) {
+  const unsigned n = args->N;
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, n);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, n);
+  for (unsigned i = 0; i < n; ++i) {
+    if (args->valid[i] == 0) continue;
+    const std::optional<UserHit> hit =
+        user_hit(*static_cast<const Primitive*>(args->geometryUserPtr), ray_of(rays, n, i),
+                 RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
+    if (!hit) continue;
+    RTCRayN_tfar(rays, n, i) = hit->t;
+    RTCHitN_u(hits, n, i) = hit->u;
+    RTCHitN_v(hits, n, i) = hit->v;
+    RTCHitN_geomID(hits, n, i) = args->geomID;
+    RTCHitN_primID(hits, n, i) = args->primID;
+    RTCHitN_instID(hits, n, i, 0) = args->context->instID[0];
   }
 }
 
-void disk_occluded(const RTCOccludedFunctionNArguments* args) {
-  if (args->valid[0] == 0) {
-    return;
-  }
-  auto* ray = reinterpret_cast<RTCRay*>(args->ray);
-  if (disk_hit(*ray, *static_cast<const Disk*>(args->geometryUserPtr))) {
-    ray->tfar = -std::numeric_limits<float>::infinity();
+template <typename Primitive>
+void occlude_user(const RTCOccludedFunctionNArguments* args) {
+  const unsigned n = args->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (args->valid[i] == 0) continue;
+    if (user_hit(*static_cast<const Primitive*>(args->geometryUserPtr), ray_of(args->ray, n, i),
+                 RTCRayN_tnear(args->ray, n, i), RTCRayN_tfar(args->ray, n, i))) {
+      RTCRayN_tfar(args->ray, n, i) = -std::numeric_limits<float>::infinity();
+    }
   }
 }
 
@@ -221,8 +208,8 @@ struct Accel::Impl {
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
     rtcSetGeometryUserData(geometry, &spheres.back());
     rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, sphere_intersect);
-    rtcSetGeometryOccludedFunction(geometry, sphere_occluded);
+    rtcSetGeometryIntersectFunction(geometry, intersect_user<Sphere>);
+    rtcSetGeometryOccludedFunction(geometry, occlude_user<Sphere>);
     attach(scene, geometry, id);
   }
   void attach_shape(RTCScene scene, const Disk& disk, std::uint32_t id) {
@@ -231,8 +218,8 @@ struct Accel::Impl {
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
     rtcSetGeometryUserData(geometry, &disks.back());
     rtcSetGeometryBoundsFunction(geometry, disk_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, disk_intersect);
-    rtcSetGeometryOccludedFunction(geometry, disk_occluded);
+    rtcSetGeometryIntersectFunction(geometry, intersect_user<Disk>);
+    rtcSetGeometryOccludedFunction(geometry, occlude_user<Disk>);
     attach(scene, geometry, id);
   }
   void attach_shapes(RTCScene scene, const Geometry& geometry, ShapeRange range) {
@@ -241,6 +228,10 @@ struct Accel::Impl {
       std::visit([&](const auto& shape) { attach_shape(scene, shape, id); }, geometry.shapes[i].geometry);
     }
   }
+  /// `hit` with its shape and instance, or that nothing was hit.
+  [[nodiscard]] std::optional<Intersection> found(unsigned geometry, unsigned instance,
+                                                  Intersection hit) const;
+
   void attach_instance(const Instance& instance, std::uint32_t id) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, groups[instance.group]);
@@ -287,33 +278,80 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
-std::optional<Intersection> Accel::intersect(const Ray& ray) const {
-  RTCRayHit rayhit{};
-  rayhit.ray = embree_ray(ray);
-  rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+namespace {
+
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(impl_->world, &rayhit);
+template <typename Arguments>
+Arguments query_arguments(bool coherent) {
+  Arguments arguments;
+  if constexpr (std::is_same_v<Arguments, RTCIntersectArguments>)
+    rtcInitIntersectArguments(&arguments);
+  else
+    rtcInitOccludedArguments(&arguments);
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  return arguments;
+}
 #else
+RTCIntersectContext query_context(bool coherent) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->world, &context, &rayhit);
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
 #endif
-  if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-    return std::nullopt;
+
+/// Embree's own masks: all bits set is "on".
+using Mask8 = std::array<int, kPacket>;
+Mask8 embree_mask(PacketMask active) {
+  Mask8 mask{};
+  for (int i = 0; i < kPacket; ++i) mask[std::size_t(i)] = active >> i & 1U ? -1 : 0;
+  return mask;
+}
+
+void set_rays(RTCRay8& out, const RayPacket& rays) {
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    const Ray& ray = rays[i];
+    out.org_x[i] = float(ray.origin.x);
+    out.org_y[i] = float(ray.origin.y);
+    out.org_z[i] = float(ray.origin.z);
+    out.dir_x[i] = float(ray.direction.x);
+    out.dir_y[i] = float(ray.direction.y);
+    out.dir_z[i] = float(ray.direction.z);
+    out.tfar[i] = float(ray.t_max);
+    out.tnear[i] = 0;
+    out.time[i] = 0;
+    out.mask[i] = ~0U;
+    out.flags[i] = 0;
   }
-  Intersection hit{.t = rayhit.ray.tfar,
-                   .u = rayhit.hit.u,
-                   .v = rayhit.hit.v,
-                   .shape = rayhit.hit.geomID,
-                   .primitive = rayhit.hit.primID};
-  if (rayhit.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
-    hit.instance = rayhit.hit.instID[0] - impl_->first_instance_id;
-    hit.shape += impl_->group_base[impl_->instance_group[hit.instance]];
+}
+
+}  // namespace
+
+std::optional<Intersection> Accel::Impl::found(unsigned geometry, unsigned instance, Intersection hit) const {
+  if (geometry == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  if (instance != RTC_INVALID_GEOMETRY_ID) {
+    hit.instance = instance - first_instance_id;
+    hit.shape = geometry + group_base[instance_group[hit.instance]];
   } else {
-    hit.shape += impl_->world_base;
+    hit.shape = geometry + world_base;
   }
   return hit;
+}
+
+std::optional<Intersection> Accel::intersect(const Ray& ray) const {
+  RTCRayHit query{};
+  query.ray = embree_ray(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(impl_->world, &query);
+#else
+  RTCIntersectContext context = query_context(false);
+  rtcIntersect1(impl_->world, &context, &query);
+#endif
+  return impl_->found(
+      query.hit.geomID, query.hit.instID[0],
+      {.t = query.ray.tfar, .u = query.hit.u, .v = query.hit.v, .primitive = query.hit.primID});
 }
 
 bool Accel::occluded(const Ray& ray) const {
@@ -321,11 +359,49 @@ bool Accel::occluded(const Ray& ray) const {
 #if RTC_VERSION_MAJOR >= 4
   rtcOccluded1(impl_->world, &r);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RTCIntersectContext context = query_context(false);
   rtcOccluded1(impl_->world, &context, &r);
 #endif
   return r.tfar < 0;  // Embree's sign of a hit: -inf
+}
+
+void Accel::intersect(const RayPacket& rays, PacketMask active, bool coherent, HitPacket& hits) const {
+  RTCRayHit8 query;
+  set_rays(query.ray, rays);
+  std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+  std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
+  alignas(32) const Mask8 mask = embree_mask(active);
+#if RTC_VERSION_MAJOR >= 4
+  auto arguments = query_arguments<RTCIntersectArguments>(coherent);
+  rtcIntersect8(mask.data(), impl_->world, &query, &arguments);
+#else
+  RTCIntersectContext context = query_context(coherent);
+  rtcIntersect8(mask.data(), impl_->world, &context, &query);
+#endif
+  for (PacketMask left = active; left != 0; left &= left - 1) {
+    const auto i = std::size_t(std::countr_zero(left));
+    hits[i] = impl_->found(
+        query.hit.geomID[i], query.hit.instID[0][i],
+        {.t = query.ray.tfar[i], .u = query.hit.u[i], .v = query.hit.v[i], .primitive = query.hit.primID[i]});
+  }
+}
+
+PacketMask Accel::occluded(const RayPacket& rays, PacketMask active, bool coherent) const {
+  RTCRay8 query;
+  set_rays(query, rays);
+  alignas(32) const Mask8 mask = embree_mask(active);
+#if RTC_VERSION_MAJOR >= 4
+  auto arguments = query_arguments<RTCOccludedArguments>(coherent);
+  rtcOccluded8(mask.data(), impl_->world, &query, &arguments);
+#else
+  RTCIntersectContext context = query_context(coherent);
+  rtcOccluded8(mask.data(), impl_->world, &context, &query);
+#endif
+  PacketMask blocked = 0;
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    if (query.tfar[i] < 0) blocked |= PacketMask(1) << i;
+  }
+  return blocked & active;
 }
 
 #if defined(__SSE2__)

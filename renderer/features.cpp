@@ -9,7 +9,7 @@ namespace spectrace {
 
 namespace {
 
-bool is_textured(const Material& material) {
+bool part_is_textured(const Material& part) {
   return std::visit(
       []<typename M>(const M& m) {
         if constexpr (requires { m.reflectance.is_textured(); }) {
@@ -20,7 +20,7 @@ bool is_textured(const Material& material) {
           return false;
         }
       },
-      material);
+      part);
 }
 
 bool is_dispersive(const Material& material) {
@@ -36,6 +36,12 @@ bool has_specular_parts(const Material& material) {
 
 }  // namespace
 
+bool is_textured(const Material& material) {
+  bool any = false;
+  for_each_part(material, [&](const Material& part) { any = any || part_is_textured(part); });
+  return any;
+}
+
 Features required_features(const Scene& scene, bool layers) {
   Features f{.depth_of_field = scene.camera.has_lens(),
              .indirect = scene.integrator.max_depth > 1,
@@ -48,9 +54,9 @@ Features required_features(const Scene& scene, bool layers) {
     const Material& material = scene.materials[shape.material];
     f.delta_lobes |= is_delta(material);
     f.transmission |= is_transmissive(material);
+    f.textures |= is_textured(material);
     for_each_part(material, [&](const Material& part) {
       f.dispersion |= is_dispersive(part);
-      f.textures |= is_textured(part);
       f.nested |= &part != &material;
       f.specular_parts |= layers && has_specular_parts(part);
     });

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "renderer/film.h"
 #include "renderer/scene.h"
 
 namespace spectrace {
@@ -72,6 +73,15 @@ constexpr bool covers(const Features& kernel, const Features& needed) {
   }
   return true;
 }
+
+/// The layers a kernel gathers.
+constexpr LayerSet layer_set(const Features& features) {
+  if (features.specular_parts) return LayerSet::kSpecularParts;
+  return features.lobe_layers ? LayerSet::kLobes : LayerSet::kBeauty;
+}
+
+/// It, or a part of it, varies over the surface.
+[[nodiscard]] bool is_textured(const Material& material);
 
 /// What this scene calls for. `layers`: the user wants them apart.
 [[nodiscard]] Features required_features(const Scene& scene, bool layers);

@@ -3,25 +3,23 @@
 
 namespace spectrace {
 
-Film::Film(int width, int height) : width_(width), height_(height), pixels_(std::size_t(width) * height) {}
+Film::Film(int width, int height, LayerSet layers)
+    : width_(width),
+      height_(height),
+      layers_(static_cast<std::size_t>(layers)),
+      sums_(std::size_t(width) * height * layers_),
+      counts_(std::size_t(width) * height) {}
 
-void Film::add(int x, int y, const PathValue& value) {
-  Pixel& pixel = pixels_[std::size_t(y) * width_ + x];
-  pixel.measured += value.measured;
-  pixel.extrapolated += value.extrapolated;
-  if (!value.valid) {
-    ++pixel.invalid;
-    return;
-  }
-  ++pixel.valid;
-  for (int layer = 0; layer < kLayerCount; ++layer) {
-    for (int c = 0; c < 3; ++c) {
-      pixel.sum[layer][c] += value.xyz[layer][c];
-    }
+void Film::add(int x, int y, const PixelSums& sums) {
+  const std::size_t pixel = std::size_t(y) * width_ + x;
+  counts_[pixel].valid += sums.valid;
+  counts_[pixel].invalid += sums.invalid;
+  for (std::size_t layer = 0; layer < layers_; ++layer) {
+    for (std::size_t c = 0; c < 3; ++c) sums_[pixel * layers_ + layer][c] += sums.xyz[layer][c];
   }
 }
 
-Image Film::resolve(LayerSet layers) const {
+Image Film::resolve() const {
   // In the order of Layer.
   constexpr std::array<const char*, kLayerCount> kPrefixes{"",
                                                            "diffuse.",
@@ -32,7 +30,7 @@ Image Film::resolve(LayerSet layers) const {
                                                            "specular_diffraction.",
                                                            "specular_residual."};
   std::vector<std::string> names;
-  for (int layer = 0; layer < int(layers); ++layer) {
+  for (std::size_t layer = 0; layer < layers_; ++layer) {
     for (const char* channel : {"R", "G", "B"}) {
       names.push_back(std::string(kPrefixes[layer]) + channel);
     }
@@ -40,34 +38,23 @@ Image Film::resolve(LayerSet layers) const {
   names.emplace_back("diagnostics.invalid");
   Image image(width_, height_, std::move(names));
   float* out = image.data.data();
-  for (const Pixel& pixel : pixels_) {
-    const double scale = pixel.valid > 0 ? 1 / double(pixel.valid) : 0;
-    for (int layer = 0; layer < int(layers); ++layer) {
-      const Xyz& sum = pixel.sum[layer];
-      for (double channel : xyz_to_rgb({sum[0] * scale, sum[1] * scale, sum[2] * scale})) {
+  const Xyz* sum = sums_.data();
+  for (const Counts& counts : counts_) {
+    const double scale = counts.valid > 0 ? 1 / double(counts.valid) : 0;
+    for (std::size_t layer = 0; layer < layers_; ++layer, ++sum) {
+      for (double channel : xyz_to_rgb({(*sum)[0] * scale, (*sum)[1] * scale, (*sum)[2] * scale})) {
         *out++ = float(channel);
       }
     }
-    *out++ = float(pixel.invalid);
+    *out++ = float(counts.invalid);
   }
   return image;
 }
 
 std::uint64_t Film::invalid_samples() const {
   std::uint64_t total = 0;
-  for (const Pixel& pixel : pixels_) {
-    total += pixel.invalid;
-  }
+  for (const Counts& counts : counts_) total += counts.invalid;
   return total;
-}
-
-double Film::extrapolated_share() const {
-  std::uint64_t measured = 0, extrapolated = 0;
-  for (const Pixel& pixel : pixels_) {
-    measured += pixel.measured;
-    extrapolated += pixel.extrapolated;
-  }
-  return measured > 0 ? double(extrapolated) / double(measured) : 0;
 }
 
 }  // namespace spectrace

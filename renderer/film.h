@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/image/image.h"
@@ -29,37 +30,35 @@ constexpr bool is_signed(int layer) { return layer > int(Layer::kSpecularFresnel
 /// How many of the layers are kept apart, from the first on.
 enum class LayerSet : std::uint8_t { kBeauty = 1, kLobes = 5, kSpecularParts = kLayerCount };
 
-/// What one path brings.
-struct PathValue {
-  std::array<Xyz, kLayerCount> xyz{};
-  bool valid = true;  ///< all of it finite and >= 0
-  /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
-  std::uint32_t measured = 0, extrapolated = 0;
+/// What the samples of one pixel bring.
+struct PixelSums {
+  std::array<Xyz, kLayerCount> xyz{};  ///< of the layers that are kept
+  /// An invalid path is dropped as if never drawn, and counted.
+  std::uint32_t valid = 0, invalid = 0;
 };
 
-/// Pixels may be added to from several threads as long as each pixel has one.
+/// Holds what is asked for: 24 bytes a layer and 8 more for each pixel. Pixels may be added to from several
+/// threads as long as each pixel has one.
 class Film {
  public:
-  Film(int width, int height);
+  Film(int width, int height, LayerSet layers);
 
-  /// An invalid path is dropped as if never drawn, and counted.
-  void add(int x, int y, const PathValue& value);
+  void add(int x, int y, const PixelSums& sums);
 
-  /// Channels of RenderResult::image, as far as `layers` goes.
-  [[nodiscard]] Image resolve(LayerSet layers) const;
+  /// Channels of RenderResult::image.
+  [[nodiscard]] Image resolve() const;
   [[nodiscard]] std::uint64_t invalid_samples() const;
-  /// Of all vertices on measured BRDFs; 0 where there are none.
-  [[nodiscard]] double extrapolated_share() const;
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
  private:
-  struct Pixel {
-    std::array<Xyz, kLayerCount> sum{};
-    std::uint64_t valid = 0, invalid = 0, measured = 0, extrapolated = 0;
+  struct Counts {
+    std::uint32_t valid = 0, invalid = 0;
   };
   int width_, height_;
-  std::vector<Pixel> pixels_;
+  std::size_t layers_;
+  std::vector<Xyz> sums_;  // pixel by pixel, layer by layer
+  std::vector<Counts> counts_;
 };
 
 }  // namespace spectrace

@@ -84,6 +84,7 @@ struct Shape {
   std::variant<Sphere, Quad, TriangleMesh, Disk> geometry;
   std::uint32_t material = 0;
   std::uint32_t first_light = kNone;  ///< area light of primitive 0; the others follow
+  bool needs_uv = true;               ///< its material varies over the surface
 };
 
 /// A group under one more transform.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One path from the camera: next-event estimation and BSDF sampling joined by multiple importance sampling
-// (Veach 1997, ch. 9-10), Russian roulette, hero wavelengths (Wilkie et al. 2014). What a scene does not need
-// is compiled away by `if constexpr`; what remains computes the same bits (ADR 0006).
+// One path from the camera, vertex by vertex, so that many can go in step: next-event estimation and BSDF
+// sampling joined by multiple importance sampling (Veach 1997, ch. 9-10), Russian roulette, hero wavelengths
+// (Wilkie et al. 2014). What a scene does not need is compiled away by `if constexpr`; what remains computes
+// the same bits (ADR 0006).
 #pragma once
 
 #include "core/math/math.h"
@@ -23,27 +24,52 @@ inline constexpr Float kMinSurvival = Float(0.05), kMaxSurvival = Float(0.95);
 /// the true one: interpolated normals that face away would render black rims (hard case H17).
 inline constexpr Float kMinShadingCosine = Float(1e-3);
 
+/// What one path brings.
+template <int kLayers>
+struct PathValue {
+  std::array<PathXyz, kLayers> xyz{};
+  bool valid = true;  ///< all of it finite and, where a layer is not signed, >= 0
+  /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
+  std::uint32_t measured = 0, extrapolated = 0;
+};
+
 template <Features kFeatures>
 class PathTracer {
  public:
-  PathTracer(const Scene& scene, const Sampler& sampler)
-      : scene_(scene),
-        sampler_(sampler),
-        lambda_(scene.wavelengths.sample(sampler.get1d(PathDimension::kWavelength))) {}
+  static constexpr int kLayers = int(layer_set(kFeatures));
 
-  PathValue trace(const Ray& camera_ray) {
-    Ray ray = camera_ray;
-    for (;; ++vertex_) {
-      const std::optional<Intersection> hit = scene_.accel.intersect(ray);
-      if (!hit) {
-        add_background(ray.direction);
-        break;
-      }
-      const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray, *hit);
-      add_emission(point, ray.direction);
-      const bool is_end = depth_ >= max_depth();
-      if (is_end ? !pass(point, ray) : !scatter(point, ray)) break;
+  PathTracer(const Scene& scene, const Sampler& sampler, Float wavelength, const Ray& camera_ray)
+      : scene_(scene), sampler_(sampler), lambda_(scene.wavelengths.sample(wavelength)), ray_(camera_ray) {}
+
+  /// The ray whose hit advance() wants.
+  [[nodiscard]] const Ray& ray() const { return ray_; }
+
+  /// Gathers what comes along ray() and turns it to go on. False: the path ends.
+  [[nodiscard]] bool advance(const std::optional<Intersection>& hit) {
+    if constexpr (kFeatures.dispersion) {
+      if (terminate_next_) terminate_secondary();
     }
+    shadow_ray_.reset();
+    if (!hit) {
+      add_background(ray_.direction);
+      return false;
+    }
+    const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray_, *hit);
+    add_emission(point, ray_.direction);
+    const bool goes_on = depth_ >= max_depth() ? pass(point) : scatter(point);
+    ++vertex_;
+    return goes_on;
+  }
+
+  /// Towards the light that advance() has chosen, if it may shine; receive_light() where nothing is in
+  /// between.
+  [[nodiscard]] const std::optional<Ray>& shadow_ray() const { return shadow_ray_; }
+  void receive_light() {
+    add_to(Layer::kBeauty, awaited_.radiance);
+    if constexpr (kFeatures.lobe_layers) add_split(awaited_.radiance, awaited_.share);
+  }
+
+  [[nodiscard]] const PathValue<kLayers>& finish() {
     flush();
     return value_;
   }
@@ -105,11 +131,7 @@ class PathTracer {
     }
   }
 
-  void add_to(Layer layer, const SampledSpectrum& radiance) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      sums_[int(layer)].v[lane] += radiance[lane];
-    }
-  }
+  void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[std::size_t(layer)] += radiance; }
 
   /// What of a BSDF's value each lobe has, by lane.
   struct LobeShares {
@@ -118,17 +140,20 @@ class PathTracer {
   };
 
   void add_split(const SampledSpectrum& radiance, const LobeShares& share) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const double all = double(radiance[lane]), diffuse = all * share.diffuse[lane],
-                   specular = all - diffuse;
-      sums_[int(Layer::kDiffuse)].v[lane] += diffuse;
-      sums_[int(Layer::kSpecular)].v[lane] += specular;
-      if constexpr (kFeatures.specular_parts) {
-        const double fresnel = all * share.fresnel[lane], diffraction = all * share.diffraction[lane];
-        sums_[int(Layer::kSpecularFresnel)].v[lane] += fresnel;
-        sums_[int(Layer::kSpecularDiffraction)].v[lane] += diffraction;
-        sums_[int(Layer::kSpecularResidual)].v[lane] += specular - fresnel - diffraction;
-      }
+    const auto to = [&](Layer layer) -> LaneSums& { return sums_[std::size_t(layer)]; };
+    const auto part = [](Float all, Float of_it) { return double(all) * double(of_it); };
+    const auto rest = [](Float all, Float of_it) { return double(all) - double(all) * double(of_it); };
+    to(Layer::kDiffuse).add(part, radiance, share.diffuse);
+    to(Layer::kSpecular).add(rest, radiance, share.diffuse);
+    if constexpr (kFeatures.specular_parts) {
+      to(Layer::kSpecularFresnel).add(part, radiance, share.fresnel);
+      to(Layer::kSpecularDiffraction).add(part, radiance, share.diffraction);
+      to(Layer::kSpecularResidual)
+          .add(
+              [&](Float all, Float diffuse, Float fresnel, Float diffraction) {
+                return rest(all, diffuse) - part(all, fresnel) - part(all, diffraction);
+              },
+              radiance, share.diffuse, share.fresnel, share.diffraction);
     }
   }
 
@@ -151,11 +176,8 @@ class PathTracer {
   /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
   void flush() {
     const LaneToXyz weights(lambda_);
-    constexpr LayerSet kUsed = kFeatures.specular_parts ? LayerSet::kSpecularParts
-                               : kFeatures.lobe_layers  ? LayerSet::kLobes
-                                                        : LayerSet::kBeauty;
-    for (int layer = 0; layer < int(kUsed); ++layer) {
-      value_.valid &= weights.add(sums_[layer], value_.xyz[layer], is_signed(layer));
+    for (std::size_t layer = 0; layer < kLayers; ++layer) {
+      value_.valid &= weights.add(sums_[layer], value_.xyz[layer], is_signed(int(layer)));
       sums_[layer] = {};
     }
   }
@@ -168,6 +190,7 @@ class PathTracer {
     Frame frame;
     Vec3 wo;  // local
     const Material& material;
+    VertexNumbers numbers;
   };
 
   [[nodiscard]] Vertex make_vertex(SurfacePoint point, Vec3 wo) const {
@@ -186,7 +209,7 @@ class PathTracer {
       point.normal_s = normalize(point.normal_s + wo * (side * (wanted - cosine)));
     }
     const Frame frame = frame_along(point.normal_s, point.tangent);
-    return {point, frame, frame.to_local(wo), material};
+    return {point, frame, frame.to_local(wo), material, sampler_.vertex(vertex_)};
   }
 
   /// Light may not pass a surface because its shading normal is bent: both normals must agree on the side.
@@ -205,7 +228,7 @@ class PathTracer {
 
   void sample_lights(const Vertex& vertex) {
     const std::optional<Lights::Choice> choice =
-        scene_.lights.choose(receiver(vertex), sampler_.get1d(vertex_, VertexDimension::kLightChoice));
+        scene_.lights.choose(receiver(vertex), vertex.numbers.light_choice);
     if (!choice) return;
     bool is_delta_light = true;
     const std::optional<LightSample> light = sample_light_source(vertex, choice->light, is_delta_light);
@@ -215,22 +238,30 @@ class PathTracer {
     const ShadingPoint at = shading_point(vertex.point);
     const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, at);
     if (bsdf.value_cos.is_zero() || light->radiance.is_zero()) return;
-    const Float visible = visibility(vertex, *light);
-    if (!(visible > 0)) return;
     const Float pdf = light->pdf * choice->probability;
     if (!(pdf > 0)) return;  // a density Float cannot hold: BSDF sampling carries it alone
     const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
-    const SampledSpectrum radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf * visible);
-    add_to(Layer::kBeauty, radiance);
+    awaited_.radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
     if constexpr (kFeatures.lobe_layers) {
-      add_split(radiance,
-                has_share_ ? share_ : lobe_shares(evaluate_lobes(vertex.material, vertex.wo, wi, at)));
+      awaited_.share = has_share_ ? share_ : lobe_shares(evaluate_lobes(vertex.material, vertex.wo, wi, at));
     }
+    const Ray ray = shadow_ray(ray_origin(vertex.point, light->wi), *light);
+    if constexpr (kFeatures.nested) {
+      if (scene_.has_holes) {
+        const Float visible = visibility_through_holes(ray, *light);
+        if (visible > 0) {
+          awaited_.radiance *= visible;
+          receive_light();
+        }
+        return;
+      }
+    }
+    shadow_ray_ = ray;
   }
 
   [[nodiscard]] std::optional<LightSample> sample_light_source(const Vertex& vertex, std::uint32_t light,
                                                                bool& is_delta_light) const {
-    [[maybe_unused]] const Vec2 u = sampler_.get2d(vertex_, VertexDimension::kLight);
+    [[maybe_unused]] const Vec2 u = vertex.numbers.light;
     if constexpr (kFeatures.area_lights) {
       if (scene_.lights.is_area(light)) {
         is_delta_light = false;
@@ -257,15 +288,7 @@ class PathTracer {
     return light.end ? Ray{origin, *light.end - origin, kShadowEnd} : Ray{origin, light.wi};
   }
 
-  /// Share of the light that arrives: 0 or 1, or what the holes in between let through.
-  [[nodiscard]] Float visibility(const Vertex& vertex, const LightSample& light) const {
-    const Ray ray = shadow_ray(ray_origin(vertex.point, light.wi), light);
-    if constexpr (kFeatures.nested) {
-      if (scene_.has_holes) return visibility_through_holes(ray, light);
-    }
-    return scene_.accel.occluded(ray) ? Float(0) : Float(1);
-  }
-
+  /// Share of the light that arrives through what lies between.
   [[nodiscard]] Float visibility_through_holes(Ray ray, const LightSample& light) const {
     Float visible = 1;
     while (const std::optional<Intersection> hit = scene_.accel.intersect(ray)) {
@@ -280,31 +303,30 @@ class PathTracer {
   }
 
   [[nodiscard]] std::optional<BsdfSample> sample_vertex(const Vertex& vertex) const {
-    const BsdfRandom u{sampler_.get1d(vertex_, VertexDimension::kBsdfLobe),
-                       sampler_.get2d(vertex_, VertexDimension::kBsdf)};
+    const BsdfRandom u{vertex.numbers.lobe, vertex.numbers.bsdf};
     return sample(vertex.material, vertex.wo, u, shading_point(vertex.point));
   }
 
-  bool go_straight_on(const Vertex& vertex, const BsdfSample& through, Ray& ray) {
+  bool go_straight_on(const Vertex& vertex, const BsdfSample& through) {
     beta_ *= through.weight;
-    ray = {ray_origin(vertex.point, ray.direction), ray.direction};
+    ray_ = {ray_origin(vertex.point, ray_.direction), ray_.direction};
     return true;
   }
 
   /// The last ray only fetches light, which may shine through holes. False: the path ends.
-  bool pass([[maybe_unused]] const SurfacePoint& point, [[maybe_unused]] Ray& ray) {
+  bool pass([[maybe_unused]] const SurfacePoint& point) {
     if constexpr (kFeatures.nested) {
       if (!scene_.has_holes) return false;
-      const Vertex vertex = make_vertex(point, -ray.direction);
+      const Vertex vertex = make_vertex(point, -ray_.direction);
       const std::optional<BsdfSample> s = sample_vertex(vertex);
-      return s && s->passes && go_straight_on(vertex, *s, ray);
+      return s && s->passes && go_straight_on(vertex, *s);
     }
     return false;
   }
 
   /// Next-event estimation and the next ray. False: the path ends.
-  bool scatter(const SurfacePoint& point, Ray& ray) {
-    const Vertex vertex = make_vertex(point, -ray.direction);
+  bool scatter(const SurfacePoint& point) {
+    const Vertex vertex = make_vertex(point, -ray_.direction);
     if (const Float last = scene_.last_measured_cosine[point.material]; last > 0) {
       ++value_.measured;
       value_.extrapolated += std::abs(vertex.wo.z) < last ? 1 : 0;
@@ -316,7 +338,7 @@ class PathTracer {
     const std::optional<BsdfSample> s = sample_vertex(vertex);
     if (!s || s->weight.is_zero()) return false;
     if constexpr (kFeatures.nested) {
-      if (s->passes) return go_straight_on(vertex, *s, ray);
+      if (s->passes) return go_straight_on(vertex, *s);
     }
     const Vec3 wi = vertex.frame.to_world(s->wi);
     if (!sides_agree(vertex, wi, s->wi)) return false;
@@ -333,49 +355,59 @@ class PathTracer {
       return false;
     }
     if constexpr (kFeatures.dispersion) {
-      if (s->is_dispersive) terminate_secondary();
+      if (s->is_dispersive && !lambda_.secondary_terminated()) {
+        terminate_next_ = true;
+        for (int lane = 1; lane < kLanes; ++lane) beta_[lane] = 0;
+      }
     }
     last_was_delta_ = s->is_delta;
     last_pdf_ = s->pdf;
     last_receiver_ = receiver(vertex);
-    ray = {ray_origin(vertex.point, wi), wi};
+    ray_ = {ray_origin(vertex.point, wi), wi};
     ++depth_;
-    return survives();
+    return survives(vertex.numbers.roulette);
   }
 
   /// From here the path knows its hero only. What the other lanes have gathered before was theirs to gather:
   /// it is kept (throwing it away is unbiased as well, but coloured noise).
   void terminate_secondary() {
-    if (lambda_.secondary_terminated()) return;
+    terminate_next_ = false;
     flush();
     lambda_.terminate_secondary();
-    for (int lane = 1; lane < kLanes; ++lane) {
-      beta_[lane] = 0;
-    }
   }
 
   /// Unbiased: what survives is divided by its probability. The last ray only fetches light: not worth a
   /// game, and so a kernel without indirect light need not know of any.
-  bool survives() {
+  bool survives([[maybe_unused]] Float u) {
     if constexpr (kFeatures.indirect) {
       if (depth_ >= scene_.integrator.roulette_depth && depth_ < scene_.integrator.max_depth) {
         const Float survival = std::clamp(beta_.max() / radiance_scale_, kMinSurvival, kMaxSurvival);
-        if (!(sampler_.get1d(vertex_, VertexDimension::kRoulette) < survival)) return false;
+        if (!(u < survival)) return false;
         beta_ *= 1 / survival;
       }
     }
     return true;
   }
 
+  /// Light that arrives unless something lies between.
+  struct AwaitedLight {
+    SampledSpectrum radiance;
+    LobeShares share;
+  };
+
   const Scene& scene_;
-  const Sampler& sampler_;
+  Sampler sampler_;
   SampledWavelengths lambda_;
-  std::uint32_t vertex_ = 0;  // surfaces met: what random numbers are named after
-  int depth_ = 0;             // those of them that scattered the path: holes do not count
+  Ray ray_;
+  std::optional<Ray> shadow_ray_;
+  AwaitedLight awaited_;
+  bool terminate_next_ = false;  // once the light of this vertex has arrived
+  std::uint32_t vertex_ = 0;     // surfaces met: what random numbers are named after
+  int depth_ = 0;                // those of them that scattered the path: holes do not count
   SampledSpectrum beta_{1};
   Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
-  std::array<LaneSums, kLayerCount> sums_{};
-  PathValue value_;
+  std::array<LaneSums, kLayers> sums_{};
+  PathValue<kLayers> value_;
   bool has_share_ = false;      // a non-delta hit has split the path into lobes
   LobeShares share_;            // of everything that arrives from behind that hit
   bool last_was_delta_ = true;  // the camera counts as one: no light sample competes

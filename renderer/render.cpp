@@ -72,7 +72,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
   const Features needed = required_features(scene, options.layers);
   const Kernel& kernel = kernel_for(needed, options.kernel);
   const CropWindow window = scene.film.window();
-  Film film(window.width, window.height);
+  Film film(window.width, window.height, layer_set(needed));
   const std::vector<Tile> tiles = make_tiles(film.width(), film.height());
   const SampleRange samples{0, std::uint64_t(options.spp)};
 
@@ -84,13 +84,18 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
                tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
   tbb::task_arena arena(threads);
   std::atomic<std::size_t> done{0};
+  std::atomic<std::uint64_t> rays{0}, measured{0}, extrapolated{0};
   const auto start = std::chrono::steady_clock::now();
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            kernel.render_tile(scene, options.seed, samples, tiles[i], film);
+            const TileCounts of_tile =
+                kernel.render_tile(scene, options.seed, samples, tiles[i], film, nullptr);
+            rays += of_tile.rays;
+            measured += of_tile.measured;
+            extrapolated += of_tile.extrapolated;
             progress.update("rendering", double(++done), double(tiles.size()));
           }
         },
@@ -100,16 +105,15 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
 
   EffectList effects = list_effects(needed, kernel.features);
   RenderResult result;
-  result.image = film.resolve(needed.specular_parts ? LayerSet::kSpecularParts
-                              : needed.lobe_layers  ? LayerSet::kLobes
-                                                    : LayerSet::kBeauty);
+  result.image = film.resolve();
   result.report = {
       .kernel = std::string(kernel.name),
       .effects_used = std::move(effects.used),
       .effects_skipped = std::move(effects.skipped),
       .paths = std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(options.spp),
+      .rays = rays,
       .invalid_samples = film.invalid_samples(),
-      .extrapolated_share = film.extrapolated_share(),
+      .extrapolated_share = measured > 0 ? double(extrapolated) / double(measured) : 0,
       .seconds = elapsed.count(),
       .threads = threads};
   return result;

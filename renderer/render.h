@@ -25,8 +25,10 @@ struct RenderOptions {
 struct RenderReport {
   std::string kernel;  ///< name of the chosen profile
   std::vector<std::string> effects_used,
-      effects_skipped;                           ///< "environment", "dispersion: no dispersive material"
-  std::uint64_t paths = 0, invalid_samples = 0;  ///< non-finite or negative radiance: dropped
+      effects_skipped;  ///< "environment", "dispersion: no dispersive material"
+  std::uint64_t paths = 0;
+  std::uint64_t rays = 0;             ///< shadow rays included, but for those through masks
+  std::uint64_t invalid_samples = 0;  ///< non-finite or negative radiance: dropped
   double extrapolated_share = 0;  ///< of path vertices on measured BRDFs: seen from beyond what was measured
   double seconds = 0;
   int threads = 0;

@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/overloaded.h"
 #include "materials/measured_albedo.h"
+#include "renderer/features.h"
 #include "renderer/scene_shapes.h"
 
 namespace spectrace {
@@ -159,6 +160,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   ShapeBuilder shapes(description, progress);
   shapes.build();
   for (const MaterialDesc& material : shapes.libraries.materials) add_material(material);
+  for (Shape& shape : shapes.geometry.shapes) shape.needs_uv = is_textured(materials[shape.material]);
   DistantLights distant = build_lights(description, progress);
   Accel accel(shapes.geometry);
   const auto uniform = WavelengthDistribution::uniform(description.range);

@@ -46,12 +46,9 @@ struct LocalPoint {
   Float magnitude = 0;  // largest coordinate that took part
 };
 
-inline LocalPoint sphere_point(const Sphere& sphere, const Ray& ray, Float t, bool want_uv) {
-  // Again in double: t came back as a float, too coarse far from the origin (hard case H15).
-  double t_exact = t;
-  if (const auto crossings = intersect_sphere(sphere, ray)) {
-    t_exact = std::abs(crossings->near - t) < std::abs(crossings->far - t) ? crossings->near : crossings->far;
-  }
+/// `t_rest`: what Embree's t, a float, is too coarse to hold far from the origin (hard case H15).
+inline LocalPoint sphere_point(const Sphere& sphere, const Ray& ray, Float t, Float t_rest, bool want_uv) {
+  const double t_exact = double(t) + double(t_rest);
   const auto offset = [&](Float o, Float d, Float c) { return double(o) + t_exact * double(d) - double(c); };
   const double x = offset(ray.origin.x, ray.direction.x, sphere.center.x);
   const double y = offset(ray.origin.y, ray.direction.y, sphere.center.y);
@@ -168,6 +165,7 @@ inline void move_to_world(const Instance& instance, LocalPoint& point) {
 template <SurfaceQuery kQuery>
 SurfacePoint surface_point(const Geometry& geometry, const Ray& ray, const Intersection& hit) {
   const Shape& shape = geometry.shapes[hit.shape];
+  const bool want_uv = kQuery.uv && shape.needs_uv;
   const Instance* instance = nullptr;
   if constexpr (kQuery.instances) {
     if (hit.instance != kNone) instance = &geometry.instances[hit.instance];
@@ -177,13 +175,13 @@ SurfacePoint surface_point(const Geometry& geometry, const Ray& ray, const Inter
     const Ray local = instance == nullptr ? ray
                                           : Ray{instance->to_local.point(ray.origin),
                                                 instance->to_local.vector(ray.direction)};
-    point = detail::sphere_point(*sphere, local, hit.t, kQuery.uv);
+    point = detail::sphere_point(*sphere, local, hit.t, hit.u, want_uv);
   } else if (const auto* quad = std::get_if<Quad>(&shape.geometry)) {
     point = detail::quad_point(*quad, hit.u, hit.v);
   } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-    point = detail::triangle_point(*mesh, hit.primitive, hit.u, hit.v, kQuery.uv);
+    point = detail::triangle_point(*mesh, hit.primitive, hit.u, hit.v, want_uv);
   } else {
-    point = detail::disk_point(std::get<Disk>(shape.geometry), hit.u, hit.v, kQuery.uv);
+    point = detail::disk_point(std::get<Disk>(shape.geometry), hit.u, hit.v, want_uv);
     static_assert(std::variant_size_v<decltype(Shape::geometry)> == 4, "a kind of shape without its point");
   }
   if (instance != nullptr) {

@@ -31,11 +31,11 @@ double model_error(const MeasuredBrdf& measured, const SeparatedSource& source, 
   double difference = 0, reflected = 0;
   for (std::uint64_t i = 0; i < kSamples; ++i) {
     const Sampler sampler(0, i, kSeed);
-    const SampledWavelengths lambda = wavelengths.sample(sampler.get1d(PathDimension::kWavelength));
+    const SampledWavelengths lambda = wavelengths.sample(sampler.path().wavelength);
     const ShadingPoint at{.lambda = lambda};
-    const Vec3 wo = sample_cosine_hemisphere(sampler.get2d(PathDimension::kPixel));
-    const BsdfRandom u{sampler.get1d(0, VertexDimension::kBsdfLobe),
-                       sampler.get2d(0, VertexDimension::kBsdf)};
+    const Vec3 wo = sample_cosine_hemisphere(sampler.path().pixel);
+    const VertexNumbers numbers = sampler.vertex(0);
+    const BsdfRandom u{numbers.lobe, numbers.bsdf};
     const std::optional<BsdfSample> drawn = brdf.sample(wo, u, at);
     if (!drawn) continue;
     const SampledSpectrum truth = measured.evaluate(wo, drawn->wi, at).value_cos / drawn->pdf;

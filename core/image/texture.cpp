@@ -20,7 +20,7 @@ constexpr NumberRange kRepeatRange{.min = 0, .max = 1e6, .min_open = true};
 
 bool is_odd(const Checkerboard& board, Vec2 uv) {
   const Float cells = std::floor(uv.x * board.repeat_u) + std::floor(uv.y * board.repeat_v);
-  return std::fmod(cells, Float(2)) != 0;
+  return cells - 2 * std::floor(cells / 2) != 0;
 }
 
 Texture parse_checkerboard(const JsonValue& json) {

@@ -22,6 +22,13 @@ template <typename T>
 constexpr T lerp(T a, T b, T t) {
   return (1 - t) * a + t * b;
 }
+/// x held within [low, high], NaN at low; by value, so that loops over lanes become vector code, which the
+/// references of std::clamp prevent.
+template <typename T>
+constexpr T clamped(T x, T low, T high) {
+  const T above = x > low ? x : low;
+  return above < high ? above : high;
+}
 /// sqrt(max(x, 0)). Any x; NaN gives 0.
 inline Float safe_sqrt(Float x) { return std::sqrt(x > 0 ? x : Float(0)); }
 /// acos of x clamped to [-1, 1].

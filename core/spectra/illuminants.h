@@ -10,7 +10,7 @@
 namespace spectrace {
 
 inline const std::initializer_list<std::string_view> kIlluminantNames = {"D65", "D50", "D55", "D75", "A",
-                                                                             "E",   "F2",  "F7",  "F11"};
+                                                                         "E",   "F2",  "F7",  "F11"};
 
 /// One of kIlluminantNames. D.., A and E: relative power, 1 at 560 nm. Fluorescent lamps, which send out
 /// little there, have the luminance of E instead.

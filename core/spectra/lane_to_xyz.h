@@ -3,33 +3,48 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
-#include "core/spectra/color.h"
+#include "core/spectra/sampled_spectrum.h"
+#include "core/spectra/sampled_wavelengths.h"
 
 namespace spectrace {
 
-/// Radiance of one path by lane, in double: the layers of a path then sum to its beauty to 1e-15.
+/// Radiance of one path by lane, in double: so its layers sum to its beauty even where X, Y and Z nearly
+/// cancel in a colour's G or B.
 struct LaneSums {
   std::array<double, kLanes> v{};
 
-  LaneSums() = default;
-  explicit LaneSums(const SampledSpectrum& radiance) {
-    for (int lane = 0; lane < kLanes; ++lane) v[lane] = double(radiance[lane]);
+  LaneSums& operator+=(const SampledSpectrum& radiance) {
+    return add([](Float x) { return double(x); }, radiance);
+  }
+  /// Adds f of the lanes of `spectra`.
+  template <typename F, typename... Spectra>
+  LaneSums& add(const F& f, const Spectra&... spectra) {
+    double* const sums = v.data();
+    const auto apply = [&](const auto*... in) {
+      for (int i = 0; i < kLanes; ++i) sums[i] += f(in[i]...);
+    };
+    apply(spectra.v.data()...);
+    return *this;
   }
 };
+
+/// X, Y and Z of one path; the fourth fills the register.
+using PathXyz = std::array<double, 4>;
 
 /// How much each lane of a path adds to X, Y and Z: (x̄, ȳ, z̄)(λ) / pdf / kLanes / ∫ȳ.
 class LaneToXyz {
  public:
   /// Lanes of density 0 (terminated) add nothing.
   explicit LaneToXyz(const SampledWavelengths& lambda);
-  /// Adds `sums` to `xyz`. False where a lane that counts is not finite, or negative unless
+  /// Adds `radiance` to `xyz`. False where a lane that counts is not finite, or negative unless
   /// `may_be_negative`.
-  bool add(const LaneSums& sums, Xyz& xyz, bool may_be_negative = false) const;
+  bool add(const LaneSums& radiance, PathXyz& xyz, bool may_be_negative = false) const;
 
  private:
-  std::array<Xyz, kLanes> weight_{};
-  std::array<bool, kLanes> counts_{};
+  alignas(4 * sizeof(Float)) std::array<std::array<Float, 4>, kLanes> weights_{};
+  std::array<std::int32_t, kLanes> counts_{};
 };
 
 }  // namespace spectrace

@@ -2,16 +2,15 @@
 // The values of a spectrum at this path's wavelengths: kLanes numbers, one SIMD register.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
 
 #include "core/base/float.h"
 
 namespace spectrace {
 
 /// Wavelengths a path carries: the one switch (ADR 0004).
-inline constexpr int kLanes = 4;
+inline constexpr int kLanes = 8;
 
 struct alignas(kLanes * sizeof(Float)) SampledSpectrum {
   std::array<Float, kLanes> v{};
@@ -22,47 +21,65 @@ struct alignas(kLanes * sizeof(Float)) SampledSpectrum {
   constexpr Float& operator[](int i) { return v[i]; }
   constexpr Float operator[](int i) const { return v[i]; }
 
-  constexpr SampledSpectrum& operator+=(const SampledSpectrum& o) {
-    for (int i = 0; i < kLanes; ++i) v[i] += o.v[i];
-    return *this;
+  constexpr SampledSpectrum& operator+=(const SampledSpectrum& o) { return *this = *this + o; }
+  constexpr SampledSpectrum& operator-=(const SampledSpectrum& o) { return *this = *this - o; }
+  constexpr SampledSpectrum& operator*=(const SampledSpectrum& o) { return *this = *this * o; }
+  constexpr SampledSpectrum& operator*=(Float s) { return *this = *this * s; }
+  friend constexpr SampledSpectrum operator+(const SampledSpectrum& a, const SampledSpectrum& b) {
+    return by_lane([](Float x, Float y) { return x + y; }, a, b);
   }
-  constexpr SampledSpectrum& operator-=(const SampledSpectrum& o) {
-    for (int i = 0; i < kLanes; ++i) v[i] -= o.v[i];
-    return *this;
+  friend constexpr SampledSpectrum operator-(const SampledSpectrum& a, const SampledSpectrum& b) {
+    return by_lane([](Float x, Float y) { return x - y; }, a, b);
   }
-  constexpr SampledSpectrum& operator*=(const SampledSpectrum& o) {
-    for (int i = 0; i < kLanes; ++i) v[i] *= o.v[i];
-    return *this;
+  friend constexpr SampledSpectrum operator*(const SampledSpectrum& a, const SampledSpectrum& b) {
+    return by_lane([](Float x, Float y) { return x * y; }, a, b);
   }
-  constexpr SampledSpectrum& operator*=(Float s) {
-    for (int i = 0; i < kLanes; ++i) v[i] *= s;
-    return *this;
+  friend constexpr SampledSpectrum operator*(const SampledSpectrum& a, Float s) {
+    return by_lane([s](Float x) { return x * s; }, a);
   }
-  friend constexpr SampledSpectrum operator+(SampledSpectrum a, const SampledSpectrum& b) { return a += b; }
-  friend constexpr SampledSpectrum operator-(SampledSpectrum a, const SampledSpectrum& b) { return a -= b; }
-  friend constexpr SampledSpectrum operator*(SampledSpectrum a, const SampledSpectrum& b) { return a *= b; }
-  friend constexpr SampledSpectrum operator*(SampledSpectrum a, Float s) { return a *= s; }
-  friend constexpr SampledSpectrum operator*(Float s, SampledSpectrum a) { return a *= s; }
-  friend constexpr SampledSpectrum operator/(SampledSpectrum a, Float s) { return a *= (1 / s); }
+  friend constexpr SampledSpectrum operator*(Float s, const SampledSpectrum& a) { return a * s; }
+  friend constexpr SampledSpectrum operator/(const SampledSpectrum& a, Float s) { return a * (1 / s); }
   friend constexpr bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
 
   [[nodiscard]] constexpr SampledSpectrum clamped_at_zero() const {
-    SampledSpectrum out;
-    for (int i = 0; i < kLanes; ++i) out[i] = v[i] > 0 ? v[i] : Float(0);
-    return out;
+    return by_lane([](Float x) { return x > 0 ? x : Float(0); }, *this);
   }
-  [[nodiscard]] constexpr Float max() const { return *std::max_element(v.begin(), v.end()); }
-  [[nodiscard]] constexpr Float min() const { return *std::min_element(v.begin(), v.end()); }
+  [[nodiscard]] constexpr Float max() const {
+    return fold(v[0], [](Float most, Float x) { return x > most ? x : most; });
+  }
+  [[nodiscard]] constexpr Float min() const {
+    return fold(v[0], [](Float least, Float x) { return x < least ? x : least; });
+  }
   [[nodiscard]] constexpr Float average() const {
-    Float sum = 0;
-    for (Float x : v) sum += x;
-    return sum / kLanes;
+    return fold(Float(0), [](Float sum, Float x) { return sum + x; }) / kLanes;
   }
   [[nodiscard]] constexpr bool is_zero() const {
-    return std::all_of(v.begin(), v.end(), [](Float x) { return x == 0; });
+    return fold(0, [](int others, Float x) { return others + (x != 0 ? 1 : 0); }) == 0;
   }
-  [[nodiscard]] bool is_finite() const {
-    return std::all_of(v.begin(), v.end(), [](Float x) { return std::isfinite(x); });
+  [[nodiscard]] constexpr bool is_finite() const {
+    constexpr Float kMost = std::numeric_limits<Float>::max();
+    return fold(0, [](int others, Float x) { return others + (x >= -kMost && x <= kMost ? 0 : 1); }) == 0;
+  }
+
+  /// f of each lane of its arguments. By pointers to plain arrays and without branches: compilers then make
+  /// it operations of whole registers.
+  template <typename F, typename... Spectra>
+  static constexpr SampledSpectrum by_lane(const F& f, const Spectra&... spectra) {
+    SampledSpectrum result;
+    Float* const out = result.v.data();
+    const auto apply = [&](const auto*... in) {
+      for (int i = 0; i < kLanes; ++i) out[i] = f(in[i]...);
+    };
+    apply(spectra.v.data()...);
+    return result;
+  }
+
+ private:
+  template <typename T, typename F>
+  [[nodiscard]] constexpr T fold(T start, const F& f) const {
+    const Float* const in = v.data();
+    for (int i = 0; i < kLanes; ++i) start = f(start, in[i]);
+    return start;
   }
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+#include <cstdint>
 
 #include "core/base/error.h"
 #include "core/math/math.h"
@@ -20,7 +20,11 @@ constexpr double kVisibleFloor = 0.02;
 // Of the lights' power may be what no pixel sees: five times the variance, where it is all, is the price.
 constexpr double kFlatShare = 0.2;
 
-constexpr int kGuides = 1024;  // more than cells: a search then tries two or three
+// A cell is then narrower than the 1 nm of the curves it is made from, but where the density is least. A
+// power of two: the place within a cell is exact.
+constexpr std::size_t kCells = 1024;
+// Cells may meet where Float cannot part their ends: its step between 512 nm and 1024 nm.
+constexpr double kLeastWidthNm = 0x1p-14;
 
 }  // namespace
 
@@ -30,30 +34,33 @@ void SampledWavelengths::terminate_secondary() {
   pdf_per_nm_[0] /= kLanes;
 }
 
-WavelengthDistribution::WavelengthDistribution(WavelengthRange range, std::vector<Float> density)
-    : range_(range), density_(std::move(density)), cumulative_(density_.size()) {
-  const double step_nm = double(range.width_nm()) / double(density_.size() - 1);
-  double total = 0;
-  for (std::size_t i = 1; i < density_.size(); ++i) {
-    total += 0.5 * step_nm * (double(density_[i - 1]) + double(density_[i]));
+WavelengthDistribution::WavelengthDistribution(WavelengthRange range, const std::vector<double>& density)
+    : range_(range), cells_(kCells) {
+  const std::size_t steps = density.size() - 1;
+  const double step_nm = double(range.width_nm()) / double(steps);
+  std::vector<double> cumulative(density.size());
+  for (std::size_t i = 1; i <= steps; ++i) {
+    cumulative[i] = cumulative[i - 1] + integrate_linear(density[i - 1], density[i], 1) * step_nm;
   }
-  double sum = 0;
-  for (std::size_t i = 1; i < density_.size(); ++i) {
-    sum += 0.5 * step_nm * (double(density_[i - 1]) + double(density_[i]));
-    cumulative_[i] = sum / total;
+  std::size_t step = 0;
+  for (std::size_t k = 0; k < kCells; ++k) {
+    const double mass = cumulative.back() * double(k) / kCells;
+    while (step + 1 < steps && cumulative[step + 1] <= mass) ++step;
+    const double t = invert_linear(density[step], density[step + 1], (mass - cumulative[step]) / step_nm);
+    cells_[k].begin_nm = static_cast<Float>(double(range.min_nm) + step_nm * (double(step) + t));
   }
-  cumulative_.back() = 1;
-  for (Float& d : density_) d = static_cast<Float>(double(d) / total);
-  const int cells = static_cast<int>(density_.size()) - 1;
-  for (int g = 0; g < kGuides; ++g) {
-    guide_.push_back(find_cell(cells, double(g) / kGuides,
-                               [&](int node) { return cumulative_[static_cast<std::size_t>(node)]; }));
+  for (std::size_t k = 0; k < kCells; ++k) {
+    Cell& cell = cells_[k];
+    cell.width_nm = (k + 1 < kCells ? cells_[k + 1].begin_nm : range.max_nm) - cell.begin_nm;
+    // A cell too narrow for Float is left out of what pdf_per_nm() finds: nothing but its begin is drawn.
+    cell.pdf_per_nm =
+        static_cast<Float>(1 / (double(kCells) * std::max(double(cell.width_nm), kLeastWidthNm)));
   }
 }
 
 WavelengthDistribution WavelengthDistribution::uniform(WavelengthRange range) {
   SPECTRACE_CHECK(std::isfinite(range.width_nm()) && range.width_nm() > 0);
-  return {range, {1, 1}};
+  return {range, {1.0, 1.0}};
 }
 
 WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
@@ -73,41 +80,35 @@ WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
   if (mean == 0) return uniform(range);  // a range nobody sees
   const bool is_lit = mean_lit > 0 && std::isfinite(mean_lit);
   const double flat = is_lit ? kFlatShare : 1;
-  std::vector<Float> density;
+  std::vector<double> density;
   for (std::size_t i = 0; i <= steps; ++i) {
     const double share = is_lit ? (1 - flat) * (lit[i] / mean_lit) : 0;
-    density.push_back(static_cast<Float>(flat * seen[i] / mean + share + kVisibleFloor));
+    density.push_back(flat * seen[i] / mean + share + kVisibleFloor);
   }
-  return {range, std::move(density)};
+  return {range, density};
 }
 
 SampledWavelengths WavelengthDistribution::sample(Float u) const {
-  const int cells = static_cast<int>(density_.size()) - 1;
   std::array<Float, kLanes> lambda_nm{}, pdf_per_nm_of_lane{};
+  Float *const nm = lambda_nm.data(), *const pdf = pdf_per_nm_of_lane.data();
+  const Cell* const cells = cells_.data();
   for (int lane = 0; lane < kLanes; ++lane) {
     // Rotated in the unit interval, so that each lane on its own has this density: Wilkie et al. 2014,
     // sec. 3.
-    double v = clamp_unit(u) + double(lane) / kLanes;
-    if (v >= 1) v -= 1;
-    int i = guide_[std::min(static_cast<std::size_t>(v * kGuides), std::size_t{kGuides - 1})];
-    while (i + 1 < cells && cumulative_[static_cast<std::size_t>(i) + 1] <= v) ++i;
-    const auto k = static_cast<std::size_t>(i);
-    const double step_nm = double(range_.width_nm()) / cells;
-    const double t = invert_linear(density_[k], density_[k + 1], (v - cumulative_[k]) / step_nm);
-    const auto l = static_cast<std::size_t>(lane);
-    lambda_nm[l] = std::clamp(static_cast<Float>(double(range_.min_nm) + step_nm * (i + t)), range_.min_nm,
-                              range_.max_nm);
-    pdf_per_nm_of_lane[l] = pdf_per_nm(lambda_nm[l]);
+    const Float rotated = u + Float(lane) / kLanes;
+    const Float position = (rotated < 1 ? rotated : rotated - 1) * Float(kCells);
+    const auto k = static_cast<std::int32_t>(position);
+    nm[lane] = cells[k].begin_nm + (position - Float(k)) * cells[k].width_nm;
+    pdf[lane] = cells[k].pdf_per_nm;
   }
   return {lambda_nm, pdf_per_nm_of_lane};
 }
 
 Float WavelengthDistribution::pdf_per_nm(Float lambda_nm) const {
   if (!(lambda_nm >= range_.min_nm && lambda_nm <= range_.max_nm)) return 0;
-  const auto cells = density_.size() - 1;
-  const Float position = (lambda_nm - range_.min_nm) / range_.width_nm() * Float(cells);
-  const auto i = std::min(static_cast<std::size_t>(position), cells - 1);
-  return lerp(density_[i], density_[i + 1], position - Float(i));
+  const auto above = std::upper_bound(cells_.begin() + 1, cells_.end(), lambda_nm,
+                                      [](Float nm, const Cell& cell) { return nm < cell.begin_nm; });
+  return (above - 1)->pdf_per_nm;
 }
 
 }  // namespace spectrace

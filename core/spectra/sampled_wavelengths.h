@@ -28,6 +28,15 @@ class SampledWavelengths {
       : lambda_nm_(lambda_nm), pdf_per_nm_(pdf_per_nm) {}
 
   [[nodiscard]] Float lambda_nm(int lane) const { return lambda_nm_[lane]; }
+  /// f of each wavelength [nm].
+  template <typename F>
+  [[nodiscard]] SampledSpectrum map(const F& f) const {
+    SampledSpectrum result;
+    Float* const out = result.v.data();
+    const Float* const nm = lambda_nm_.data();
+    for (int i = 0; i < kLanes; ++i) out[i] = f(nm[i]);
+    return result;
+  }
   /// 0 for a terminated lane.
   [[nodiscard]] Float pdf_per_nm(int lane) const { return pdf_per_nm_[lane]; }
   [[nodiscard]] bool secondary_terminated() const { return kLanes > 1 && pdf_per_nm_[1] == 0; }
@@ -36,12 +45,12 @@ class SampledWavelengths {
   void terminate_secondary();
 
  private:
-  std::array<Float, kLanes> lambda_nm_{};
+  alignas(kLanes * sizeof(Float)) std::array<Float, kLanes> lambda_nm_{};
   std::array<Float, kLanes> pdf_per_nm_{};
 };
 
 /// Density over a range from which the hero and, by rotation in the unit interval, the other lanes are
-/// drawn. Immutable; shared by threads.
+/// drawn: constant over each of 1024 cells of equal probability. Immutable; shared by threads.
 class WavelengthDistribution {
  public:
   /// Constant density: 1 / width.
@@ -61,11 +70,16 @@ class WavelengthDistribution {
   [[nodiscard]] WavelengthRange range() const { return range_; }
 
  private:
-  WavelengthDistribution(WavelengthRange range, std::vector<Float> density);
+  /// `density` at equal steps over the range, linear between them, not all 0.
+  WavelengthDistribution(WavelengthRange range, const std::vector<double>& density);
+
+  /// Wavelengths of equal probability, and the density between two of them: what is drawn is linear in the
+  /// number it is drawn by, so that a sample is two lookups and its density is exact.
+  struct Cell {
+    Float begin_nm = 0, width_nm = 0, pdf_per_nm = 0;
+  };
   WavelengthRange range_;
-  std::vector<Float> density_;      // piecewise linear over equal steps, integrates to 1 [1/nm]
-  std::vector<double> cumulative_;  // at the same nodes; first 0, last 1
-  std::vector<int> guide_;          // the cells in which equal parts of the unit interval begin
+  std::vector<Cell> cells_;
 };
 
 }  // namespace spectrace

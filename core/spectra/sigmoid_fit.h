@@ -10,11 +10,13 @@
 
 namespace spectrace {
 
-/// S(x) = 1/2 + x / (2 sqrt(1 + x²)), by the form that does not cancel where S is small.
+/// S(x) = 1/2 + x / (2 sqrt(1 + x²)), from its smaller side, S(-|x|), by the form in which nothing cancels;
+/// the other is 1 less that. Without branches: lanes are computed together.
 template <typename T>
 T sigmoid(T x) {
   const T r = std::sqrt(1 + x * x);
-  return x < 0 ? T(0.5) / (r * (r - x)) : T(0.5) + x / (2 * r);
+  const T below = T(0.5) / (r * (r + std::abs(x)));
+  return x < 0 ? below : 1 - below;
 }
 /// Greys closer to 0 or 1 than this are held here, where the sigmoid is within a float's rounding of its
 /// limit.

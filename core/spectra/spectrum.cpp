@@ -4,16 +4,44 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 
 #include "core/base/error.h"
 #include "core/math/math.h"
 #include "core/math/piecewise_linear.h"
+#include "core/spectra/cie_tables.h"
 #include "core/spectra/color.h"
 #include "core/spectra/sigmoid_fit.h"
 
 namespace spectrace {
 namespace {
+
+/// D65 over its luminance, in the light path's own type: white of Y = 1.
+class WhiteD65 {
+ public:
+  static const WhiteD65& table() {
+    static const WhiteD65 made;
+    return made;
+  }
+  /// As illuminant_d65(): linear between the samples, the end values outside.
+  [[nodiscard]] Float at(Float lambda_nm) const {
+    const Float position = clamped((lambda_nm - kD65MinNm) * (Float(1) / kD65StepNm), Float(0), kLast);
+    const auto i = static_cast<std::int32_t>(position);
+    const auto k = static_cast<std::size_t>(i);
+    return nodes_[k] + (position - Float(i)) * (nodes_[k + 1] - nodes_[k]);
+  }
+
+ private:
+  static constexpr auto kLast = Float(kD65Samples - 1);
+  WhiteD65() {
+    for (std::size_t i = 0; i < kD65Samples; ++i) {
+      nodes_[i] = static_cast<Float>(kD65[i] / 100 / d65_luminance());
+    }
+    nodes_[kD65Samples] = nodes_[kD65Samples - 1];
+  }
+  std::array<Float, kD65Samples + 1> nodes_{};  // the last twice: no cell ends beyond
+};
 
 // Steps that differ by less count as equal: wavelengths written with three decimals at 0.5 nm steps. The cell
 // found is then off by at most one node's rounding, which the clamp in at() absorbs.
@@ -50,17 +78,21 @@ TabulatedSpectrum::TabulatedSpectrum(std::vector<Float> lambda_nm, std::vector<F
 Float TabulatedSpectrum::at(Float lambda_nm) const {
   if (!(lambda_nm > lambda_nm_.front())) return values_.front();
   if (lambda_nm >= lambda_nm_.back()) return values_.back();
-  std::size_t i = 0;
-  if (inverse_step_per_nm_ > 0) {
-    i = std::min(static_cast<std::size_t>((lambda_nm - lambda_nm_.front()) * inverse_step_per_nm_),
-                 lambda_nm_.size() - 2);
-  } else {
-    i = static_cast<std::size_t>(std::upper_bound(lambda_nm_.begin(), lambda_nm_.end(), lambda_nm) -
-                                 lambda_nm_.begin()) -
-        1;
-  }
+  const auto above = std::upper_bound(lambda_nm_.begin(), lambda_nm_.end(), lambda_nm);
+  const auto i = static_cast<std::size_t>(above - lambda_nm_.begin()) - 1;
   const Float t = (lambda_nm - lambda_nm_[i]) / (lambda_nm_[i + 1] - lambda_nm_[i]);
-  return lerp(values_[i], values_[i + 1], static_cast<Float>(clamp_unit(t)));
+  return lerp(values_[i], values_[i + 1], clamped(t, Float(0), Float(1)));
+}
+
+SampledSpectrum TabulatedSpectrum::sample(const SampledWavelengths& lambda) const {
+  if (!(inverse_step_per_nm_ > 0)) return lambda.map([this](Float nm) { return at(nm); });
+  const Float last_cell = Float(lambda_nm_.size() - 2), begin_nm = lambda_nm_.front();
+  return lambda.map([nodes = lambda_nm_.data(), values = values_.data(), per_nm = inverse_step_per_nm_,
+                     last_cell, begin_nm](Float nm) {
+    const auto i = static_cast<std::int32_t>(clamped((nm - begin_nm) * per_nm, Float(0), last_cell));
+    const Float t = clamped((nm - nodes[i]) / (nodes[i + 1] - nodes[i]), Float(0), Float(1));
+    return lerp(values[i], values[i + 1], t);
+  });
 }
 
 Float BlackbodySpectrum::at(Float lambda_nm) const {
@@ -80,7 +112,12 @@ Float SigmoidSpectrum::at(Float lambda_nm) const {
 }
 
 Float RgbIlluminantSpectrum::at(Float lambda_nm) const {
-  return sigmoid.at(lambda_nm) * static_cast<Float>(illuminant_d65(lambda_nm) / d65_luminance());
+  return sigmoid.at(lambda_nm) * WhiteD65::table().at(lambda_nm);
+}
+
+SampledSpectrum RgbIlluminantSpectrum::sample(const SampledWavelengths& lambda) const {
+  const WhiteD65& white = WhiteD65::table();
+  return lambda.map([s = sigmoid, &white](Float nm) { return s.at(nm) * white.at(nm); });
 }
 
 Float SellmeierSpectrum::at(Float lambda_nm) const {
@@ -104,9 +141,11 @@ Float Spectrum::at(Float lambda_nm) const {
 SampledSpectrum Spectrum::sample(const SampledWavelengths& lambda) const {
   return std::visit(
       [&](const auto& s) {
-        SampledSpectrum r;
-        for (int i = 0; i < kLanes; ++i) r[i] = s.at(lambda.lambda_nm(i));
-        return r;
+        if constexpr (requires { s.sample(lambda); }) {
+          return s.sample(lambda);
+        } else {
+          return lambda.map([s](Float nm) { return s.at(nm); });
+        }
       },
       v_);
 }

@@ -31,6 +31,7 @@ class TabulatedSpectrum {
   /// `lambda_nm` strictly increasing, at least one entry, as many as `values`, all finite: checked.
   TabulatedSpectrum(std::vector<Float> lambda_nm, std::vector<Float> values);
   [[nodiscard]] Float at(Float lambda_nm) const;
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda) const;
   [[nodiscard]] std::span<const Float> lambda_nm() const { return lambda_nm_; }
   [[nodiscard]] std::span<const Float> values() const { return values_; }
 
@@ -61,6 +62,7 @@ struct SigmoidSpectrum {
 struct RgbIlluminantSpectrum {
   SigmoidSpectrum sigmoid;
   [[nodiscard]] Float at(Float lambda_nm) const;
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda) const;
 };
 
 /// scale · n with n² = 1 + Σ b_i λ² / (λ² - c_i), λ in [µm], c in [µm²]; n = 1 where the sum is negative or

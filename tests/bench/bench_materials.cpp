@@ -117,11 +117,11 @@ const std::vector<Vertex>& vertices() {
     std::vector<Vertex> out;
     for (std::size_t i = 0; i < kVertices; ++i) {
       const Sampler random(i, 0, 1);
-      out.push_back({.wo = sample_cosine_hemisphere(random.get2d(0, VertexDimension::kLight)),
-                     .wi = sample_cosine_hemisphere(random.get2d(1, VertexDimension::kLight)),
-                     .lambda = lambda.sample(random.get1d(PathDimension::kWavelength)),
-                     .random = {.lobe = random.get1d(0, VertexDimension::kBsdfLobe),
-                                .direction = random.get2d(0, VertexDimension::kBsdf)}});
+      out.push_back({.wo = sample_cosine_hemisphere(random.vertex(0).light),
+                     .wi = sample_cosine_hemisphere(random.vertex(1).light),
+                     .lambda = lambda.sample(random.path().wavelength),
+                     .random = {.lobe = random.vertex(0).lobe,
+                                .direction = random.vertex(0).bsdf}});
     }
     return out;
   }();

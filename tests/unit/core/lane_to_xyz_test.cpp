@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "core/spectra/color.h"
+
 namespace spectrace {
 namespace {
 
@@ -17,15 +19,16 @@ SampledWavelengths hero_at_555_nm() {
 }
 
 TEST(LaneToXyz, TerminatedLanesAddNothing) {
-  Xyz xyz{};
-  EXPECT_TRUE(LaneToXyz(hero_at_555_nm()).add(LaneSums(SampledSpectrum(2)), xyz));
+  PathXyz xyz{};
+  EXPECT_TRUE(LaneToXyz(hero_at_555_nm()).add(LaneSums() += SampledSpectrum(2), xyz));
   EXPECT_NEAR(xyz[1], 2 / 0.01 / kLanes / cie_y_integral(), 1e-6);
 }
 
 TEST(LaneToXyz, TellsWhatNoPixelMayHold) {
   const LaneToXyz weights(hero_at_555_nm());
-  Xyz xyz{};
-  LaneSums sums(SampledSpectrum(1));
+  PathXyz xyz{};
+  LaneSums sums;
+  sums += SampledSpectrum(1);
   for (int lane = 1; lane < kLanes; ++lane) sums.v[lane] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(weights.add(sums, xyz)) << "of lanes that do not count";
   sums.v[0] = -1;

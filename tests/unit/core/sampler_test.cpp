@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -37,45 +39,54 @@ void expect_independent(const char* what, const Pair& pair) {
       << what;
 }
 
+constexpr int kPathNumbers = 5, kVertexNumbers = 7;
+
+std::array<Float, kPathNumbers> of_path(const Sampler& sampler) {
+  const PathNumbers n = sampler.path();
+  return {n.wavelength, n.pixel.x, n.pixel.y, n.lens.x, n.lens.y};
+}
+std::array<Float, kVertexNumbers> of_vertex(const Sampler& sampler, std::uint32_t vertex) {
+  const VertexNumbers n = sampler.vertex(vertex);
+  return {n.light_choice, n.light.x, n.light.y, n.lobe, n.bsdf.x, n.bsdf.y, n.roulette};
+}
 Float bsdf_x(std::uint64_t pixel, std::uint64_t sample, std::uint64_t seed, std::uint32_t vertex = 0) {
-  return Sampler(pixel, sample, seed).get2d(vertex, VertexDimension::kBsdf).x;
+  return Sampler(pixel, sample, seed).vertex(vertex).bsdf.x;
 }
 
 TEST(Sampler, IsAFunctionOfItsArgumentsAlone) {
   const Sampler a(77, 5, 1);
-  const Float first = a.get1d(3, VertexDimension::kLightChoice);
-  (void)a.get1d(PathDimension::kWavelength);
-  (void)a.get2d(9, VertexDimension::kBsdf);
-  EXPECT_EQ(first, a.get1d(3, VertexDimension::kLightChoice));
-  EXPECT_EQ(first, Sampler(77, 5, 1).get1d(3, VertexDimension::kLightChoice));
+  const auto first = of_vertex(a, 3);
+  (void)a.path();
+  (void)a.vertex(9);
+  EXPECT_EQ(first, of_vertex(a, 3));
+  EXPECT_EQ(first, of_vertex(Sampler(77, 5, 1), 3));
 }
 
 TEST(Sampler, NumbersStayWhatTheyWere) {
   // A change here changes every image ever rendered: say so in the changelog.
   const Sampler s(123456, 789, 42);
-  EXPECT_NEAR(s.get1d(PathDimension::kWavelength), 0.4418148398, 1e-7);
-  EXPECT_NEAR(s.get2d(PathDimension::kPixel).x, 0.7928214669, 1e-7);
-  EXPECT_NEAR(s.get2d(PathDimension::kPixel).y, 0.3389383554, 1e-7);
-  EXPECT_NEAR(s.get1d(2, VertexDimension::kRoulette), 0.3633237481, 1e-7);
+  EXPECT_NEAR(s.path().wavelength, 0.4485992193, 1e-7);
+  EXPECT_NEAR(s.path().pixel.x, 0.8374225497, 1e-7);
+  EXPECT_NEAR(s.vertex(0).light.y, 0.0422688723, 1e-7);
+  EXPECT_NEAR(s.vertex(2).roulette, 0.6247736812, 1e-7);
 }
 
 TEST(Sampler, NumbersLieInTheHalfOpenUnitInterval) {
   for (std::uint64_t i = 0; i < 100000; ++i) {
     const Sampler s(i, i * i, ~i);
-    for (const Float u : {s.get1d(PathDimension::kWavelength), s.get2d(PathDimension::kPixel).x,
-                          s.get2d(PathDimension::kPixel).y, s.get1d(0, VertexDimension::kBsdfLobe)}) {
-      ASSERT_GE(u, 0);
-      ASSERT_LT(u, 1);
-    }
+    for (const Float u : of_path(s)) ASSERT_TRUE(u >= 0 && u < 1);
+    for (const Float u : of_vertex(s, i % 5)) ASSERT_TRUE(u >= 0 && u < 1);
   }
 }
 
-TEST(Sampler, DimensionsOfOneVertexAreIndependent) {
-  for (std::uint32_t d = 0; d + 1 < static_cast<std::uint32_t>(VertexDimension::kEnd); ++d) {
-    expect_independent("neighbouring dimensions", [d](std::uint64_t i) -> Vec2 {
-      const Sampler s(i % 512, i / 512, 0);
-      return {s.get1d(0, static_cast<VertexDimension>(d)), s.get1d(0, static_cast<VertexDimension>(d + 1))};
-    });
+TEST(Sampler, NumbersOfOneVertexAreIndependentOverPixels) {
+  for (const std::uint32_t vertex : {0U, 1U, 4U}) {
+    for (std::size_t d = 0; d + 1 < kVertexNumbers; ++d) {
+      expect_independent("neighbouring numbers", [=](std::uint64_t i) -> Vec2 {
+        const auto u = of_vertex(Sampler(i, 5, 0), vertex);
+        return {u[d], u[d + 1]};
+      });
+    }
   }
 }
 
@@ -102,71 +113,61 @@ TEST(Sampler, NeighboursAreIndependent) {
   });
 }
 
-TEST(Sampler, StratifiedDimensionsAreIndependentOverPixels) {
-  const auto at = [](std::uint64_t i, PathDimension d) { return Sampler(i, 3, 0).get2d(d); };
-  expect_independent("kPixel", [&](std::uint64_t i) { return at(i, PathDimension::kPixel); });
-  expect_independent("kWavelength, neighbouring pixels", [](std::uint64_t i) -> Vec2 {
-    return {Sampler(i, 3, 0).get1d(PathDimension::kWavelength),
-            Sampler(i + 1, 3, 0).get1d(PathDimension::kWavelength)};
+TEST(Sampler, NumbersOfAPathAreIndependentOverPixels) {
+  expect_independent("pixel", [](std::uint64_t i) { return Sampler(i, 3, 0).path().pixel; });
+  expect_independent("lens", [](std::uint64_t i) { return Sampler(i, 3, 0).path().lens; });
+  expect_independent("wavelength, neighbouring pixels", [](std::uint64_t i) -> Vec2 {
+    return {Sampler(i, 3, 0).path().wavelength, Sampler(i + 1, 3, 0).path().wavelength};
   });
-  expect_independent("kWavelength and the first bounce", [](std::uint64_t i) -> Vec2 {
-    const Sampler s(i % 64, i / 64, 0);
-    return {s.get1d(PathDimension::kWavelength), s.get2d(0, VertexDimension::kBsdf).x};
+  expect_independent("wavelength and the first bounce", [](std::uint64_t i) -> Vec2 {
+    return {Sampler(i, 3, 0).path().wavelength, bsdf_x(i, 3, 0)};
   });
-  expect_independent("kPixel and the first bounce", [](std::uint64_t i) -> Vec2 {
-    const Sampler s(i % 64, i / 64, 0);
-    return {s.get2d(PathDimension::kPixel).x, s.get2d(0, VertexDimension::kBsdf).x};
-  });
+}
+
+/// How many strata of width 1/n the first n samples of a pixel fall into.
+template <typename Number>
+std::size_t strata_hit(int n, std::uint64_t first, const Number& number) {
+  std::set<int> strata;
+  for (int i = 0; i < n; ++i) strata.insert(int(number(first + std::uint64_t(i)) * Float(n)));
+  return strata.size();
+}
+
+TEST(Sampler, EveryNumberIsStratifiedOverEachAlignedBlock) {
+  for (const std::uint64_t first : {0U, 256U, 4096U}) {
+    for (std::size_t d = 1; d < kPathNumbers; ++d) {  // the wavelength has a test of its own
+      EXPECT_EQ(strata_hit(256, first, [=](std::uint64_t i) { return of_path(Sampler(11, i, 0))[d]; }), 256U);
+    }
+    for (const std::uint32_t vertex : {0U, 1U, 2U, 7U}) {
+      for (std::size_t d = 0; d < kVertexNumbers; ++d) {
+        EXPECT_EQ(
+            strata_hit(256, first, [=](std::uint64_t i) { return of_vertex(Sampler(11, i, 0), vertex)[d]; }),
+            256U);
+      }
+    }
+  }
 }
 
 TEST(Sampler, WavelengthsOfOnePixelAreStratified) {
-  const double pixel_offset = Sampler(5, 0, 1).get1d(PathDimension::kWavelength);
-  for (const int n : {kLanes * kLanes, kLanes * kLanes * kLanes * kLanes}) {
-    for (const int width : {1, kLanes}) {  // the heroes, and all lanes
-      std::set<int> strata;
-      for (int i = 0; i < n / (width == 1 ? 1 : kLanes); ++i) {
-        const double u = Sampler(5, static_cast<std::uint64_t>(i), 1).get1d(PathDimension::kWavelength);
-        for (int lane = 0; lane < width; ++lane) {
-          // 2^-22: both terms are rounded to 24 bits, and every fourth stratum begins just at a sample.
-          const double t = u - pixel_offset + double(lane) / kLanes + 1 + 0x1p-22;
-          strata.insert(int((t - std::floor(t)) * n));
-        }
-      }
-      EXPECT_EQ(strata.size(), std::size_t(n)) << "one wavelength in each stratum; lanes counted: " << width;
-    }
+  // Of all lanes together over kLanes^k samples, and of the heroes over kLanes^k times as many.
+  const int n = kLanes * kLanes;
+  std::set<int> lanes, heroes;
+  for (int i = 0; i < n; ++i) {
+    const Float u = Sampler(5, static_cast<std::uint64_t>(i), 1).path().wavelength;
+    heroes.insert(int(u * Float(kLanes)));
+    const Float set = u * Float(kLanes) - std::floor(u * Float(kLanes));
+    lanes.insert(int(set * Float(n)));
   }
+  EXPECT_EQ(lanes.size(), std::size_t(n)) << "sets of lanes";
+  EXPECT_EQ(heroes.size(), std::size_t(kLanes));
 }
 
-TEST(Sampler, PixelPositionsFillThePixelEvenly) {
-  // Points in boxes [0, a) x [0, b) against n a b. Random points of this number are off by 20 or more
-  // (asserted); these, rotated by the pixel's offset, by about 5.
-  const int n = 1024;
-  double worst = 0, worst_random = 0;
-  for (int a = 1; a < 32; ++a) {
-    for (int b = 1; b < 32; ++b) {
-      int inside = 0, random_inside = 0;
-      for (int i = 0; i < n; ++i) {
-        const Vec2 u = Sampler(8, static_cast<std::uint64_t>(i), 0).get2d(PathDimension::kPixel);
-        inside += u.x < Float(a) / 32 && u.y < Float(b) / 32;
-        // Another pixel each time: independent.
-        const Vec2 v = Sampler(static_cast<std::uint64_t>(i), 0, 0).get2d(0, VertexDimension::kBsdf);
-        random_inside += v.x < Float(a) / 32 && v.y < Float(b) / 32;
-      }
-      worst = std::max(worst, std::abs(inside - n * double(a) * b / 1024));
-      worst_random = std::max(worst_random, std::abs(random_inside - n * double(a) * b / 1024));
-    }
-  }
-  EXPECT_LT(worst, 8);
-  EXPECT_GT(worst_random, 20);
-}
-
-TEST(Sampler, EveryElementaryBoxOfAPairHasOneSample) {
+TEST(Sampler, EveryElementaryBoxOfAPixelHasOneSample) {
   for (const std::uint64_t first : {0U, 64U, 4096U}) {  // any aligned block of samples
     for (int columns_log2 = 0; columns_log2 <= 6; ++columns_log2) {
       const int columns = 1 << columns_log2, rows = 64 / columns;
       std::set<int> boxes;
       for (std::uint64_t i = first; i < first + 64; ++i) {
-        const Vec2 u = Sampler(3, i, 7).get2d(2, VertexDimension::kLight);
+        const Vec2 u = Sampler(3, i, 7).path().pixel;
         boxes.insert(int(u.x * Float(columns)) * rows + int(u.y * Float(rows)));
       }
       EXPECT_EQ(boxes.size(), 64U) << columns << " columns, from sample " << first;
@@ -174,44 +175,50 @@ TEST(Sampler, EveryElementaryBoxOfAPairHasOneSample) {
   }
 }
 
-TEST(Sampler, EverySingleNumberIsStratified) {
-  for (const VertexDimension d : {VertexDimension::kLightChoice, VertexDimension::kBsdfLobe,
-                                  VertexDimension::kRoulette, VertexDimension::kMask}) {
-    std::set<int> strata;
-    for (std::uint64_t i = 0; i < 256; ++i) strata.insert(int(Sampler(11, i, 0).get1d(1, d) * 256));
-    EXPECT_EQ(strata.size(), 256U);
-  }
-}
-
-TEST(Sampler, NumbersOfOneSampleAreIndependentOverTheSamplesOfAPixel) {
-  // Padded sequences share their index: without an order of its own each would be a function of the other.
-  expect_independent("light and BSDF", [](std::uint64_t i) -> Vec2 {
-    const Sampler s(5, i, 0);
-    return {s.get2d(0, VertexDimension::kLight).x, s.get2d(0, VertexDimension::kBsdf).x};
-  });
-  expect_independent("one number at two vertices", [](std::uint64_t i) -> Vec2 {
-    const Sampler s(5, i, 0);
-    return {s.get1d(0, VertexDimension::kBsdfLobe), s.get1d(1, VertexDimension::kBsdfLobe)};
-  });
-}
-
-TEST(Sampler, WavelengthAndPixelPositionAreJointlyEven) {
-  // An edge inside a pixel must not pick out wavelengths: counts over 8 x 8 x 8 boxes vary no more than
-  // random ones would, whose chi-square is near its 511 degrees of freedom (seen: 230 to 390).
-  const int n = 8192;
-  for (const std::uint64_t pixel : {0u, 1u, 1000u}) {
-    std::vector<double> counts(512);
+/// Variance of counts over 4^k boxes of n samples of a pixel, over that of independent samples (1).
+template <typename Numbers>
+double unevenness(int n, const Numbers& numbers) {
+  double sum = 0;
+  int pixels = 0;
+  for (std::uint64_t pixel = 0; pixel < 64; ++pixel, ++pixels) {
+    std::map<std::size_t, double> counts;
+    std::size_t boxes = 1;
     for (int i = 0; i < n; ++i) {
-      const Sampler s(pixel, static_cast<std::uint64_t>(i), 0);
-      const Vec2 p = s.get2d(PathDimension::kPixel);
-      const auto box = std::size_t(p.x * 8) * 64 + std::size_t(p.y * 8) * 8 +
-                       std::size_t(s.get1d(PathDimension::kWavelength) * 8);
+      std::size_t box = 0;
+      boxes = 1;
+      for (const Float u : numbers(Sampler(pixel, std::uint64_t(i), 3))) {
+        box = box * 4 + std::size_t(u * 4);
+        boxes *= 4;
+      }
       counts[box] += 1;
     }
-    double sum = 0;
-    for (const double c : counts) sum += (c - n / 512.0) * (c - n / 512.0) / (n / 512.0);
-    EXPECT_LT(sum, 511);
+    const double expected = double(n) / double(boxes);
+    double squares = (double(boxes) - double(counts.size())) * expected * expected;
+    for (const auto& [box, count] : counts) squares += (count - expected) * (count - expected);
+    sum += squares / (n * (1 - 1 / double(boxes)));
   }
+  return sum / pixels;
+}
+
+TEST(Sampler, NumbersThatMeetAreEvenTogether) {
+  // 1 for independent numbers. What a path of one bounce combines fills boxes of several dimensions more
+  // evenly than chance: padded two-dimensional sequences would be as uneven as chance in these.
+  EXPECT_LT(
+      unevenness(256,
+                 [](const Sampler& s) {
+                   return std::array{s.vertex(0).light_choice, s.vertex(0).light.x, s.vertex(0).light.y};
+                 }),
+      0.5);
+  EXPECT_LT(unevenness(256,
+                       [](const Sampler& s) {
+                         return std::array{s.vertex(0).bsdf.x, s.vertex(0).bsdf.y, s.vertex(1).light.x};
+                       }),
+            0.5);
+  EXPECT_LT(unevenness(256,
+                       [](const Sampler& s) {
+                         return std::array{s.path().pixel.x, s.path().wavelength, s.vertex(0).light.x};
+                       }),
+            0.5);
 }
 
 }  // namespace

@@ -116,7 +116,10 @@ TEST(Dielectric, AQuarterWaveOfTheMeanIndexLetsAllThrough) {
   const Float film = std::sqrt(Float(1.5));
   const Dielectric glass{Spectrum::constant(Float(1.5)),
                          ThinFilm{.eta = Spectrum::constant(film), .thickness_nm = 500 / (4 * film)}};
-  SampledWavelengths hero({500, 500, 500, 500}, {1, 1, 1, 1});
+  std::array<Float, kLanes> nm{}, density{};
+  nm.fill(500);
+  density.fill(1);
+  const SampledWavelengths hero(nm, density);
   const auto s = glass.sample(at_angle(0), {.lobe = Float(1e-5), .direction = {}}, {.lambda = hero});
   ASSERT_TRUE(s);
   EXPECT_LT(s->wi.z, 0);

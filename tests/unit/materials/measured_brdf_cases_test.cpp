@@ -21,9 +21,9 @@ namespace {
 using test::make_measured;
 using test::SyntheticMeasured;
 
-const SampledWavelengths kLambda({450, 550, 610, 690}, {1, 1, 1, 1});
+const SampledWavelengths kLambda({450, 550, 610, 690, 400, 500, 580, 650}, {1, 1, 1, 1, 1, 1, 1, 1});
 const ShadingPoint kPoint{kLambda};
-static_assert(kLanes == 4);
+static_assert(kLanes == 8);
 
 Vec3 direction(double theta, double phi) {
   return {Float(std::sin(theta) * std::cos(phi)), Float(std::sin(theta) * std::sin(phi)),

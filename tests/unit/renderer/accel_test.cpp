@@ -2,6 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <set>
 
 #include "renderer/accel_embree.h"
 #include "renderer/geometry.h"
@@ -37,6 +41,68 @@ TEST(Accel, HitsNameTheirShapeBesideGroups) {
     EXPECT_EQ(hit_at(x)->shape, shape);
     EXPECT_EQ(hit_at(x)->instance, 0U);
   }
+}
+
+Geometry one_of_each_kind() {
+  Geometry geometry;
+  TriangleMesh hill;
+  hill.positions = {{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}, {0, 0, 1}};
+  hill.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  geometry.shapes = {sphere_at(0), sphere_at(2), Shape{.geometry = hill},
+                     Shape{.geometry = Quad{{-9, -9, -2}, {18, 0, 0}, {0, 18, 0}}},
+                     Shape{.geometry = Disk{{-2, 0, 2}, {1, 0, 0}, {0, 1, 0}}}};
+  geometry.groups = {{0, 1}};
+  geometry.top = {1, 5};
+  Transform up, down;
+  up.m[2][3] = 4;
+  down.m[2][3] = -4;
+  geometry.instances.push_back({0, up, down, false});
+  return geometry;
+}
+
+TEST(Accel, PacketsFindWhatSingleRaysFind) {
+  const Geometry geometry = one_of_each_kind();
+  const Accel accel(geometry);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  const auto any = [&](Float size) {
+    return Vec3{size * uniform(random), size * uniform(random), size * uniform(random)};
+  };
+  std::size_t hit_count = 0;
+  std::set<std::uint32_t> shapes;
+  for (int round = 0; round < 500; ++round) {
+    RayPacket rays;
+    for (Ray& ray : rays)
+      ray = {any(6), any(1), round % 3 == 0 ? Float(8) : std::numeric_limits<Float>::infinity()};
+    const auto active = PacketMask(random() & 0xffU);
+    const bool coherent = round % 2 == 0;  // advice only: what is found does not depend on it
+    const Intersection untouched{.t = -7};
+    HitPacket hits;
+    hits.fill(untouched);
+    accel.intersect(rays, active, coherent, hits);
+    const PacketMask blocked = accel.occluded(rays, active, coherent);
+    EXPECT_EQ(blocked & ~active, 0U);
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      if ((active >> i & 1U) == 0) {
+        EXPECT_EQ(hits[i]->t, untouched.t);
+        continue;
+      }
+      const std::optional<Intersection> single = accel.intersect(rays[i]);
+      ASSERT_EQ(hits[i].has_value(), single.has_value());
+      EXPECT_EQ((blocked >> i & 1U) != 0, single.has_value());
+      if (!single) continue;
+      ++hit_count;
+      shapes.insert(single->shape);
+      EXPECT_EQ(hits[i]->shape, single->shape);
+      EXPECT_EQ(hits[i]->primitive, single->primitive);
+      EXPECT_EQ(hits[i]->instance, single->instance);
+      EXPECT_NEAR(hits[i]->t, single->t, 1e-5 * single->t);  // Embree's packet code rounds in another order
+      EXPECT_NEAR(hits[i]->u, single->u, 1e-5);
+      EXPECT_NEAR(hits[i]->v, single->v, 1e-5);
+    }
+  }
+  EXPECT_GT(hit_count, 500U);
+  EXPECT_EQ(shapes.size(), geometry.shapes.size());
 }
 
 TEST(Accel, DisksAreHitWithinTheirRimAndNowhereElse) {
