@@ -204,12 +204,19 @@ Environment::Environment(const Image& image, const std::filesystem::path& file, 
   // much memory.
   constexpr std::size_t kMostTexelsToDivide = std::size_t(1) << 23U;
   const int parts = luminance.size() <= kMostTexelsToDivide ? 2 : 1;
-  const std::vector<double> weights = cell_weights(luminance, width_, height_, parts);
-  double sin_sum = 0;
+  std::vector<double> weights = cell_weights(luminance, width_, height_, parts);
+  std::vector<double> sines;
   for (int y = 0; y < height_ * parts; ++y) {
-    sin_sum += std::sin(double(kPi) * (y + 0.5) / (height_ * parts));
+    sines.push_back(std::sin(kPi64 * (y + 0.5) / (height_ * parts)));
   }
-  mean_luminance_ = std::accumulate(weights.begin(), weights.end(), 0.0) / (sin_sum * width_ * parts);
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+  mean_luminance_ = all / (std::accumulate(sines.begin(), sines.end(), 0.0) * width_ * parts);
+  // Only what is brighter than the mean is worth light samples: the rest is found by BSDF sampling at least
+  // as well, and multiple importance sampling joins the two (Karlík et al. 2019, "MIS Compensation", sec. 4).
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    weights[i] = std::max(0.0, weights[i] - mean_luminance_ * sines[i / (std::size_t(width_) * parts)]);
+  }
+  sampled_share_ = all > 0 ? std::accumulate(weights.begin(), weights.end(), 0.0) / all : 0;
   density_ = GridDensity(width_ * parts, height_ * parts, weights);
 }
 
@@ -242,10 +249,7 @@ SampledSpectrum Environment::radiance(Vec3 direction, const SampledWavelengths& 
 }
 
 std::optional<Environment::Sample> Environment::sample(Vec2 u) const {
-  if (!is_image()) {
-    const Float z = 1 - 2 * u.x, r = safe_sqrt(4 * u.x * (1 - u.x)), phi = 2 * kPi * u.y;
-    return Sample{{r * std::cos(phi), r * std::sin(phi), z}, kInvPi / 4};
-  }
+  if (!(sampled_share_ > 0)) return std::nullopt;
   const GridDensity::Sample s = density_.sample(u);
   const Float theta = s.position.y * kPi, phi = (Float(0.5) - s.position.x) * (2 * kPi);
   const Float sin_theta = std::sin(theta);
@@ -258,9 +262,7 @@ std::optional<Environment::Sample> Environment::sample(Vec2 u) const {
 }
 
 Float Environment::pdf(Vec3 direction) const {
-  if (!is_image()) {
-    return kInvPi / 4;
-  }
+  if (!(sampled_share_ > 0)) return 0;
   const Vec3 local = axes_.to_local(direction);
   const Float sin_theta = std::sqrt(sqr(local.x) + sqr(local.y));
   const Float pdf = density_.pdf(image_position(local)) / (2 * kPi * kPi * sin_theta);

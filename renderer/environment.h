@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from infinitely far: constant, or a latitude-longitude image sampled in proportion to its luminance.
+// Light from infinitely far: constant, or a latitude-longitude image sampled where it is bright.
 #pragma once
 
 #include <filesystem>
@@ -51,12 +51,16 @@ class Environment {
     Float pdf = 0;  ///< per solid angle [1/sr], > 0
   };
   [[nodiscard]] SampledSpectrum radiance(Vec3 direction, const SampledWavelengths& lambda) const;
+  /// In proportion to how much brighter than the mean the image is: what is darker is left to BSDF sampling.
+  /// nullopt everywhere where sampled_share() is 0.
   [[nodiscard]] std::optional<Sample> sample(Vec2 u) const;
   /// The density of sample() returning unit `direction`.
   [[nodiscard]] Float pdf(Vec3 direction) const;
 
   /// Mean over all directions: for the choice between lights.
   [[nodiscard]] Float mean_radiance(Float lambda_nm) const;
+  /// Of its light that sample() is after, in [0, 1): 0 of a constant one.
+  [[nodiscard]] double sampled_share() const { return sampled_share_; }
   [[nodiscard]] bool is_image() const { return width_ > 0; }
 
  private:
@@ -70,6 +74,7 @@ class Environment {
   std::optional<SpectralImage> spectra_;            // instead of texels_
   std::optional<TabulatedSpectrum> mean_spectrum_;  // of spectra_, over all directions
   double mean_luminance_ = 1;
+  double sampled_share_ = 0;
   Frame axes_;  // the image's x, y, z in the world
   GridDensity density_;
 };

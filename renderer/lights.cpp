@@ -130,7 +130,8 @@ Lights::Lights(std::vector<AreaLight> area, const std::vector<std::uint32_t>& gr
     emitters.push_back({{mean_over(observer, [&](Float nm) { return power_of(light, double(nm)); })}});
   }
   if (environment_) {
-    emitters.push_back({{mean_over(observer, [&](Float nm) { return power_of_environment(double(nm)); })}});
+    const double power = mean_over(observer, [&](Float nm) { return power_of_environment(double(nm)); });
+    emitters.push_back({{power * environment_->sampled_share()}});
   }
   double sum = 0;
   for (double p : choice_probabilities(emitters)) {
@@ -176,10 +177,11 @@ void Lights::add_distant(const WavelengthDistribution& observer) {
       irradiances.push_back(mean_of(observer, sun->irradiance));
     }
   }
-  if (environment_) {
+  if (environment_ && environment_->sampled_share() > 0) {
     distant_.push_back({environment_index(), {}});
-    irradiances.push_back(
-        kPi64 * mean_over(observer, [&](Float nm) { return double(environment_->mean_radiance(nm)); }));
+    const double radiance =
+        mean_over(observer, [&](Float nm) { return double(environment_->mean_radiance(nm)); });
+    irradiances.push_back(kPi64 * radiance * environment_->sampled_share());
   }
   if (distant_.empty()) return;
   const double unit =

@@ -69,7 +69,8 @@ class Lights {
   /// half of that equal between emitters, so that no light starves, half by their power. `u` in [0, 1).
   /// Nothing where there is no light, or none that the number leads to can light the receiver.
   [[nodiscard]] std::optional<Choice> choose(const Receiver& receiver, Float u) const;
-  /// Of choose() returning `light`: the same bits. Above 0 for all lights with power.
+  /// Of choose() returning `light`: the same bits. Above 0 for all lights with power, but for what an
+  /// environment leaves to BSDF sampling.
   [[nodiscard]] Float probability(std::uint32_t light, const Receiver& receiver) const;
 
   /// Of all lights [W/nm], distant ones by what of them the scene catches.

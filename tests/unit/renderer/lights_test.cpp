@@ -280,7 +280,17 @@ TEST(Environment, SamplesAsItsPdfSays) {
   EXPECT_LE(differing, 20);
 }
 
-TEST(Environment, PdfIntegratesToOneAndCoversAllThatShines) {
+TEST(Environment, ConstantLightIsLeftToBsdfSampling) {
+  const Environment sky(Spectrum::constant(3));
+  EXPECT_EQ(sky.sampled_share(), 0);
+  EXPECT_FALSE(sky.sample({Float(0.3), Float(0.6)}));
+  EXPECT_EQ(sky.pdf({0, 0, 1}), 0);
+  const Lights lights({}, {}, {}, {}, sky, WavelengthDistribution::uniform({}), 1);
+  EXPECT_EQ(lights.probability(lights.environment_index(), {}), 0);
+  EXPECT_FALSE(lights.choose({}, Float(0.5)));
+}
+
+TEST(Environment, PdfIntegratesToOneAndCoversWhatIsBrighterThanTheMean) {
   const Environment sky = test_sky();
   const SampledWavelengths lambda = WavelengthDistribution::uniform({}).sample(Float(0.2));
   double sum = 0, largest_ratio = 0, mean = 0;
@@ -293,14 +303,14 @@ TEST(Environment, PdfIntegratesToOneAndCoversAllThatShines) {
       const double pdf = sky.pdf(direction), value = sky.radiance(direction, lambda)[0];
       sum += pdf;
       mean += value;
-      if (value > 0) {
-        EXPECT_GT(pdf, 0);
-        largest_ratio = std::max(largest_ratio, value / pdf);
-      }
+      // Together with directions drawn evenly, as a matt surface draws them at worst.
+      largest_ratio = std::max(largest_ratio, value / (pdf + 1 / (4 * kPi64)));
     }
   }
   const double cell = 4 * kPi64 / (2.0 * kSteps * kSteps);
   EXPECT_NEAR(sum * cell, 1, 2e-3);
+  EXPECT_GT(sky.sampled_share(), 0);
+  EXPECT_LT(sky.sampled_share(), 1);
   // No firefly: the bilinear image is at most 4 times its mean over a quarter texel; 1.6 for sinθ near the
   // poles and for colours, whose luminance is not their radiance at this wavelength.
   EXPECT_LT(largest_ratio, 4 * 1.6 * mean * cell);
