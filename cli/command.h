@@ -25,5 +25,6 @@ void add_inspect(CLI::App& app, Action& chosen);
 void add_acquire(CLI::App& app, Action& chosen);
 void add_reproduce(CLI::App& app, Action& chosen);  ///< the paper's tables and figures
 void add_sheet(CLI::App& app, Action& chosen);  ///< contact sheet of images
+void add_bench(CLI::App& app, Action& chosen);  ///< speed of a scene
 
 }  // namespace spectrace::cli

@@ -23,6 +23,7 @@ constexpr const char* kExamples =
     "  spectrace compare reference.exr test.exr --max relmse=1e-3 --min ssim=0.99\n"
     "  spectrace inspect pearlescent.bsdf\n"
     "  spectrace reproduce epfl_rgb -o report\n"
+    "  spectrace bench scenes/cornell_box.json\n"
     "\n"
     "Exit codes: 0 success, 1 images differ or a fit is unusable, 2 usage, 3 bad input, 4 internal error.";
 
@@ -40,6 +41,7 @@ ExitCode run(int argc, const char* const* argv) {
   add_acquire(app, chosen);
   add_reproduce(app, chosen);
   add_sheet(app, chosen);
+  add_bench(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 
+#include "core/base/wide.h"
 #include "core/math/sobol.h"
 #include "core/spectra/sampled_spectrum.h"
 
@@ -98,7 +99,7 @@ constexpr BlockColumns kOwnColumns = block_columns(kOwnDimensions);
 
 /// The numbers of a block as 32-bit fractions. A scrambling each; loops over the block are one operation of a
 /// wide register.
-Words block_at(const BlockColumns& columns, std::uint32_t index, std::uint64_t key) {
+SPECTRACE_WIDE Words block_at(const BlockColumns& columns, std::uint32_t index, std::uint64_t key) {
   Words x{};
   for (; index != 0; index &= index - 1) {
     const Words& column = columns[std::size_t(std::countr_zero(index))];

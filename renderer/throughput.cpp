@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/throughput.h"
+
+#include <algorithm>
+#include <bit>
+#include <variant>
+#include <vector>
+
+#include "core/base/cost.h"
+#include "core/math/sampler.h"
+#include "renderer/kernels.h"
+#include "renderer/render.h"
+
+namespace spectrace {
+
+namespace {
+
+/// Ample for a rate to a percent, and 500 MB of packets at the most.
+constexpr std::size_t kLoggedPackets = std::size_t(1) << 20;
+constexpr int kLogTile = 8;  // pixels
+constexpr std::uint64_t kLogSamples = 16;
+
+struct Logged {
+  TraceLog packets;
+  std::uint64_t rays = 0, paths = 0;
+};
+
+/// Tiles spread over the picture until there are enough packets.
+Logged log_rays(const Scene& scene, const Kernel& kernel, std::uint64_t samples) {
+  const CropWindow window = scene.film.window();
+  Film film(window.width, window.height, layer_set(kernel.features));
+  std::vector<Tile> tiles;
+  for (int y = 0; y < window.height; y += kLogTile) {
+    for (int x = 0; x < window.width; x += kLogTile) {
+      tiles.push_back({x, y, std::min(x + kLogTile, window.width), std::min(y + kLogTile, window.height)});
+    }
+  }
+  Logged logged;
+  // Steps of a golden share of the tiles reach all of them in an order that is spread at every length.
+  const auto step = std::size_t(double(tiles.size()) * 0.618033988749895) | 1U;
+  for (std::size_t i = 0; i < tiles.size() && logged.packets.size() < kLoggedPackets; ++i) {
+    const Tile& tile = tiles[i * step % tiles.size()];
+    logged.rays += kernel.render_tile(scene, 0, {0, samples}, tile, film, &logged.packets).rays;
+    logged.paths += std::uint64_t(tile.x1 - tile.x0) * std::uint64_t(tile.y1 - tile.y0) * samples;
+  }
+  return logged;
+}
+
+/// Something that depends on all hits, so that no compiler leaves them out.
+std::uint64_t trace_packets(const Accel& accel, const TraceLog& packets) {
+  std::uint64_t hit_count = 0;
+  HitPacket hits;
+  for (const TracedPacket& packet : packets) {
+    if (packet.is_shadow) {
+      hit_count += std::uint64_t(std::popcount(accel.occluded(packet.rays, packet.active, packet.coherent)));
+      continue;
+    }
+    accel.intersect(packet.rays, packet.active, packet.coherent, hits);
+    for (PacketMask left = packet.active; left != 0; left &= left - 1) {
+      hit_count += hits[std::size_t(std::countr_zero(left))] ? 1U : 0U;
+    }
+  }
+  return hit_count;
+}
+
+std::uint64_t trace_singly(const Accel& accel, const TraceLog& packets) {
+  std::uint64_t hit_count = 0;
+  for (const TracedPacket& packet : packets) {
+    for (PacketMask left = packet.active; left != 0; left &= left - 1) {
+      const Ray& ray = packet.rays[std::size_t(std::countr_zero(left))];
+      hit_count += packet.is_shadow ? accel.occluded(ray) : accel.intersect(ray).has_value();
+    }
+  }
+  return hit_count;
+}
+
+/// Random numbers and wavelengths of as many paths, with as many vertices, as were logged.
+double draw_numbers(const Scene& scene, const Logged& logged) {
+  std::uint64_t vertices = 0;
+  for (const TracedPacket& packet : logged.packets) {
+    if (!packet.is_shadow) vertices += std::uint64_t(std::popcount(packet.active));
+  }
+  const std::uint64_t each = vertices / std::max<std::uint64_t>(1, logged.paths);
+  double sum = 0;
+  for (std::uint64_t path = 0; path < logged.paths; ++path) {
+    const Sampler sampler(path / kLogSamples, path % kLogSamples, 0);
+    sum += double(scene.wavelengths.sample(sampler.path().wavelength).lambda_nm(kLanes - 1));
+    for (std::uint32_t vertex = 0; vertex < each; ++vertex) sum += double(sampler.vertex(vertex).bsdf.x);
+  }
+  return sum;
+}
+
+std::uint64_t triangles_of(const Scene& scene) {
+  std::uint64_t count = 0;
+  for (const Shape& shape : scene.geometry.shapes) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) count += mesh->triangles.size();
+  }
+  return count;
+}
+
+}  // namespace
+
+double Throughput::raw_rays_per_second() const {
+  return std::max(double(rays) / traversal, single_rays_per_second);
+}
+
+Throughput measure_throughput(const Scene& scene, const ThroughputOptions& options, Progress& progress) {
+  RenderOptions render_options{.spp = options.spp, .threads = 1, .layers = options.layers};
+  const RenderResult one = render(scene, render_options, progress);
+  render_options.threads = options.threads;
+  const RenderResult many = render(scene, render_options, progress);
+  Throughput result{.kernel = one.report.kernel,
+                    .paths = one.report.paths,
+                    .rays = one.report.rays,
+                    .triangles = triangles_of(scene),
+                    .seconds = one.report.seconds,
+                    .threads = many.report.threads,
+                    .seconds_of_threads = many.report.seconds};
+
+  const FlushDenormals flush;
+  const Kernel& kernel = choose_kernel(required_features(scene, options.layers));
+  const Logged logged =
+      log_rays(scene, kernel, std::min<std::uint64_t>(kLogSamples, std::uint64_t(options.spp)));
+  volatile double sink = 0;  // what is computed must be computed
+  const auto seconds = [&](const auto& work) { return seconds_of([&] { sink = double(work()); }); };
+  const double packets = seconds([&] { return trace_packets(scene.accel, logged.packets); });
+  const double singles = seconds([&] { return trace_singly(scene.accel, logged.packets); });
+  const double numbers = seconds([&] { return draw_numbers(scene, logged); });
+  const auto of_all = [](double time, std::uint64_t part, std::uint64_t all) {
+    return part > 0 ? time * double(all) / double(part) : 0;
+  };
+  result.traversal = of_all(packets, logged.rays, result.rays);
+  result.sampling = of_all(numbers, logged.paths, result.paths);
+  result.single_rays_per_second = singles > 0 ? double(logged.rays) / singles : 0;
+  const Film film(one.image.width, one.image.height, layer_set(kernel.features));
+  result.film = seconds([&] { return film.resolve().data.size(); });
+  return result;
+}
+
+}  // namespace spectrace
