@@ -90,10 +90,7 @@ SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv) const
     return (is_odd(*board, uv) ? board->odd : board->even).sample(lambda);
   }
   if (const auto* spectra = std::get_if<SpectralTexture>(&v_)) return spectra->sample(lambda, uv);
-  const SigmoidSpectrum s = uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv));
-  SampledSpectrum r;
-  for (int i = 0; i < kLanes; ++i) r[i] = s.at(lambda.lambda_nm(i));
-  return r;
+  return uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv)).sample(lambda);
 }
 
 Texture image_texture(const Image& image, const std::string& file) {

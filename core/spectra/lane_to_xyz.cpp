@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/base/wide.h"
 #include "core/math/math.h"
 #include "core/spectra/cie_tables.h"
 #include "core/spectra/color.h"
@@ -48,7 +49,9 @@ const Bars& bars() {
 
 }  // namespace
 
-LaneToXyz::LaneToXyz(const SampledWavelengths& lambda) {
+LaneToXyz::LaneToXyz(const SampledWavelengths& lambda) { weigh(lambda); }
+
+SPECTRACE_WIDE void LaneToXyz::weigh(const SampledWavelengths& lambda) {
   const Bars& observer = bars();
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const Float pdf = lambda.pdf_per_nm(int(lane));
@@ -57,7 +60,7 @@ LaneToXyz::LaneToXyz(const SampledWavelengths& lambda) {
   }
 }
 
-bool LaneToXyz::add(const LaneSums& radiance, PathXyz& xyz, bool may_be_negative) const {
+SPECTRACE_WIDE bool LaneToXyz::add(const LaneSums& radiance, PathXyz& xyz, bool may_be_negative) const {
   constexpr double kMost = std::numeric_limits<double>::max();
   const double least = may_be_negative ? -kMost : 0;
   const std::int32_t* const counts = counts_.data();

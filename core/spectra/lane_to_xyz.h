@@ -43,6 +43,8 @@ class LaneToXyz {
   bool add(const LaneSums& radiance, PathXyz& xyz, bool may_be_negative = false) const;
 
  private:
+  void weigh(const SampledWavelengths& lambda);
+
   alignas(4 * sizeof(Float)) std::array<std::array<Float, 4>, kLanes> weights_{};
   std::array<std::int32_t, kLanes> counts_{};
 };

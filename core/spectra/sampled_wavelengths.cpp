@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/base/error.h"
+#include "core/base/wide.h"
 #include "core/math/math.h"
 #include "core/math/piecewise_linear.h"
 #include "core/spectra/color.h"
@@ -88,7 +89,7 @@ WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
   return {range, density};
 }
 
-SampledWavelengths WavelengthDistribution::sample(Float u) const {
+SPECTRACE_WIDE SampledWavelengths WavelengthDistribution::sample(Float u) const {
   std::array<Float, kLanes> lambda_nm{}, pdf_per_nm_of_lane{};
   Float *const nm = lambda_nm.data(), *const pdf = pdf_per_nm_of_lane.data();
   const Cell* const cells = cells_.data();

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "core/base/wide.h"
 #include "core/math/math.h"
 #include "core/math/piecewise_linear.h"
 #include "core/spectra/cie_tables.h"
@@ -84,7 +85,7 @@ Float TabulatedSpectrum::at(Float lambda_nm) const {
   return lerp(values_[i], values_[i + 1], clamped(t, Float(0), Float(1)));
 }
 
-SampledSpectrum TabulatedSpectrum::sample(const SampledWavelengths& lambda) const {
+SPECTRACE_WIDE SampledSpectrum TabulatedSpectrum::sample(const SampledWavelengths& lambda) const {
   if (!(inverse_step_per_nm_ > 0)) return lambda.map([this](Float nm) { return at(nm); });
   const Float last_cell = Float(lambda_nm_.size() - 2), begin_nm = lambda_nm_.front();
   return lambda.map([nodes = lambda_nm_.data(), values = values_.data(), per_nm = inverse_step_per_nm_,
@@ -111,11 +112,15 @@ Float SigmoidSpectrum::at(Float lambda_nm) const {
   return scale * sigmoid(x);
 }
 
+SPECTRACE_WIDE SampledSpectrum SigmoidSpectrum::sample(const SampledWavelengths& lambda) const {
+  return lambda.map([s = *this](Float nm) { return s.at(nm); });
+}
+
 Float RgbIlluminantSpectrum::at(Float lambda_nm) const {
   return sigmoid.at(lambda_nm) * WhiteD65::table().at(lambda_nm);
 }
 
-SampledSpectrum RgbIlluminantSpectrum::sample(const SampledWavelengths& lambda) const {
+SPECTRACE_WIDE SampledSpectrum RgbIlluminantSpectrum::sample(const SampledWavelengths& lambda) const {
   const WhiteD65& white = WhiteD65::table();
   return lambda.map([s = sigmoid, &white](Float nm) { return s.at(nm) * white.at(nm); });
 }

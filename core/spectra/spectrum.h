@@ -55,6 +55,7 @@ struct SigmoidSpectrum {
   std::array<Float, 3> c{0, 0, 0};
   Float scale = 1;
   [[nodiscard]] Float at(Float lambda_nm) const;
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda) const;
 };
 
 /// A sigmoid times the illuminant D65, normalised so that rgb (1,1,1) has the colour and luminance of white:
