@@ -12,7 +12,6 @@
 #include "cli/console_progress.h"
 #include "cli/inspect_report.h"
 #include "cli/output.h"
-#include "core/base/cost.h"
 #include "core/base/file.h"
 #include "core/base/version.h"
 #include "renderer/throughput.h"
@@ -64,7 +63,7 @@ InspectReport report_of(const Arguments& arguments, const Throughput& t) {
   render.add("threads", t.threads);
   render.add("seconds_threads", t.seconds_of_threads);
   render.add("speedup_of_threads", t.seconds / t.seconds_of_threads);
-  render.add("peak_memory_mb", double(peak_memory_bytes()) * 1e-6);
+  render.add("peak_memory_mb", double(t.peak_memory_bytes) * 1e-6);
   InspectSection embree;
   embree.title = "embree_alone";
   embree.add("packets_million_rays_per_second", double(t.rays) / t.traversal * 1e-6);

@@ -115,7 +115,8 @@ Throughput measure_throughput(const Scene& scene, const ThroughputOptions& optio
                     .triangles = triangles_of(scene),
                     .seconds = one.report.seconds,
                     .threads = many.report.threads,
-                    .seconds_of_threads = many.report.seconds};
+                    .seconds_of_threads = many.report.seconds,
+                    .peak_memory_bytes = peak_memory_bytes()};  // the log of rays is not a render's
 
   const FlushDenormals flush;
   const Kernel& kernel = choose_kernel(required_features(scene, options.layers));

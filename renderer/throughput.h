@@ -2,6 +2,7 @@
 // How fast a scene renders, and where the time goes: the rays of a render are traced again by themselves.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -23,7 +24,8 @@ struct Throughput {
   std::uint64_t triangles = 0;        ///< in memory: those of instances count once
   double seconds = 0;
   int threads = 0;
-  double seconds_of_threads = 0;  ///< the same render on `threads` threads
+  double seconds_of_threads = 0;      ///< the same render on `threads` threads
+  std::size_t peak_memory_bytes = 0;  ///< of loading and rendering; 0 where the system does not tell
   /// Of `seconds`, from a part of the paths done again: tracing their rays; drawing their random numbers and
   /// wavelengths; turning the film into an image. What remains is shading.
   double traversal = 0, sampling = 0, film = 0;
