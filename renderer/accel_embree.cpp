@@ -6,9 +6,6 @@
 #else
 #include <embree3/rtcore.h>
 #endif
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
 
 #include <algorithm>
 #include <array>
@@ -38,32 +35,29 @@ RTCRay embree_ray(const Ray& ray) {
   return r;
 }
 
+/// The box centre ± half, outwards by some rounding steps of the largest coordinate, so that it holds the
+/// primitive.
+RTCBounds box_around(Vec3 center, Vec3 half, Float largest) {
+  const float margin = 4 * 0x1p-24F * float(largest);
+  const Vec3 low = center - half, high = center + half;
+  RTCBounds b{};
+  b.lower_x = float(low.x) - margin;
+  b.lower_y = float(low.y) - margin;
+  b.lower_z = float(low.z) - margin;
+  b.upper_x = float(high.x) + margin;
+  b.upper_y = float(high.y) + margin;
+  b.upper_z = float(high.z) + margin;
+  return b;
+}
+
 void sphere_bounds(const RTCBoundsFunctionArguments* args) {
   const Sphere& s = *static_cast<const Sphere*>(args->geometryUserPtr);
-  // Outwards by some rounding steps of centre + radius, so that the box holds the sphere.
-  constexpr float kRounding = 4 * 0x1p-24F;
-  const float margin = kRounding * float(max_abs(s.center) + s.radius);
-  RTCBounds& b = *args->bounds_o;
-  b.lower_x = float(s.center.x - s.radius) - margin;
-  b.lower_y = float(s.center.y - s.radius) - margin;
-  b.lower_z = float(s.center.z - s.radius) - margin;
-  b.upper_x = float(s.center.x + s.radius) + margin;
-  b.upper_y = float(s.center.y + s.radius) + margin;
-  b.upper_z = float(s.center.z + s.radius) + margin;
+  *args->bounds_o = box_around(s.center, {s.radius, s.radius, s.radius}, max_abs(s.center) + s.radius);
 }
 
 void disk_bounds(const RTCBoundsFunctionArguments* args) {
   const Disk& disk = *static_cast<const Disk*>(args->geometryUserPtr);
-  const Vec3 half = disk.half_extent();
-  // Some rounding steps, as around spheres.
-  const float margin = 4 * 0x1p-24F * float(largest_coordinate(disk));
-  RTCBounds& b = *args->bounds_o;
-  b.lower_x = float(disk.center.x - half.x) - margin;
-  b.lower_y = float(disk.center.y - half.y) - margin;
-  b.lower_z = float(disk.center.z - half.z) - margin;
-  b.upper_x = float(disk.center.x + half.x) + margin;
-  b.upper_y = float(disk.center.y + half.y) + margin;
-  b.upper_z = float(disk.center.z + half.z) + margin;
+  *args->bounds_o = box_around(disk.center, disk.half_extent(), largest_coordinate(disk));
 }
 
 /// What a primitive of ours tells Embree of a crossing.
@@ -203,23 +197,19 @@ struct Accel::Impl {
     attach(scene, geometry, id);
   }
   void attach_shape(RTCScene scene, const Sphere& sphere, std::uint32_t id) {
-    spheres.push_back(sphere);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, &spheres.back());
-    rtcSetGeometryBoundsFunction(geometry, sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_user<Sphere>);
-    rtcSetGeometryOccludedFunction(geometry, occlude_user<Sphere>);
-    attach(scene, geometry, id);
+    attach_user(scene, spheres.emplace_back(sphere), sphere_bounds, id);
   }
   void attach_shape(RTCScene scene, const Disk& disk, std::uint32_t id) {
-    disks.push_back(disk);
+    attach_user(scene, disks.emplace_back(disk), disk_bounds, id);
+  }
+  template <typename Primitive>
+  void attach_user(RTCScene scene, Primitive& primitive, RTCBoundsFunction bounds, std::uint32_t id) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, &disks.back());
-    rtcSetGeometryBoundsFunction(geometry, disk_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_user<Disk>);
-    rtcSetGeometryOccludedFunction(geometry, occlude_user<Disk>);
+    rtcSetGeometryUserData(geometry, &primitive);
+    rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_user<Primitive>);
+    rtcSetGeometryOccludedFunction(geometry, occlude_user<Primitive>);
     attach(scene, geometry, id);
   }
   void attach_shapes(RTCScene scene, const Geometry& geometry, ShapeRange range) {
@@ -403,16 +393,5 @@ PacketMask Accel::occluded(const RayPacket& rays, PacketMask active, bool cohere
   }
   return blocked & active;
 }
-
-#if defined(__SSE2__)
-namespace {
-constexpr unsigned kFlushBits = 0x8040;  // MXCSR: flush to zero (15), denormals are zero (6)
-}
-FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | kFlushBits); }
-FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
-#else
-FlushDenormals::FlushDenormals() : saved_(0) {}
-FlushDenormals::~FlushDenormals() = default;
-#endif
 
 }  // namespace spectrace

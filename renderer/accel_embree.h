@@ -49,16 +49,4 @@ class Accel {
   std::unique_ptr<Impl> impl_;
 };
 
-/// While it lives, this thread flushes denormal numbers to zero, as Embree asks of its callers.
-class FlushDenormals {
- public:
-  FlushDenormals();
-  ~FlushDenormals();
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned saved_;
-};
-
 }  // namespace spectrace

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/math/concentric_disk.h"
+#include "renderer/flush_denormals.h"
 #include "renderer/path_tracer.h"
 
 namespace spectrace {

@@ -10,6 +10,7 @@
 #include "core/spectra/lane_to_xyz.h"
 #include "renderer/features.h"
 #include "renderer/film.h"
+#include "renderer/lobe_shares.h"
 #include "renderer/scene.h"
 #include "renderer/surface.h"
 
@@ -66,7 +67,7 @@ class PathTracer {
   [[nodiscard]] const std::optional<Ray>& shadow_ray() const { return shadow_ray_; }
   void receive_light() {
     add_to(Layer::kBeauty, awaited_.radiance);
-    if constexpr (kFeatures.lobe_layers) add_split(awaited_.radiance, awaited_.share);
+    if constexpr (kFeatures.lobe_layers) split(awaited_.radiance, awaited_.share);
   }
 
   [[nodiscard]] const PathValue<kLayers>& finish() {
@@ -76,6 +77,8 @@ class PathTracer {
 
  private:
   static constexpr SurfaceQuery kQuery{.instances = kFeatures.instances, .uv = kFeatures.textures};
+
+  static constexpr bool kParts = kFeatures.specular_parts;
 
   [[nodiscard]] int max_depth() const {
     if constexpr (kFeatures.indirect) return scene_.integrator.max_depth;
@@ -126,51 +129,14 @@ class PathTracer {
         add_to(Layer::kSpecular, radiance);
         if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
       } else {
-        add_split(radiance, share_);
+        split(radiance, share_);
       }
     }
   }
 
   void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[std::size_t(layer)] += radiance; }
-
-  /// What of a BSDF's value each lobe has, by lane.
-  struct LobeShares {
-    SampledSpectrum diffuse;               // in [0, 1]; the rest is specular
-    SampledSpectrum fresnel, diffraction;  // signed; the rest of specular is residual
-  };
-
-  void add_split(const SampledSpectrum& radiance, const LobeShares& share) {
-    const auto to = [&](Layer layer) -> LaneSums& { return sums_[std::size_t(layer)]; };
-    const auto part = [](Float all, Float of_it) { return double(all) * double(of_it); };
-    const auto rest = [](Float all, Float of_it) { return double(all) - double(all) * double(of_it); };
-    to(Layer::kDiffuse).add(part, radiance, share.diffuse);
-    to(Layer::kSpecular).add(rest, radiance, share.diffuse);
-    if constexpr (kFeatures.specular_parts) {
-      to(Layer::kSpecularFresnel).add(part, radiance, share.fresnel);
-      to(Layer::kSpecularDiffraction).add(part, radiance, share.diffraction);
-      to(Layer::kSpecularResidual)
-          .add(
-              [&](Float all, Float diffuse, Float fresnel, Float diffraction) {
-                return rest(all, diffuse) - part(all, fresnel) - part(all, diffraction);
-              },
-              radiance, share.diffuse, share.fresnel, share.diffraction);
-    }
-  }
-
-  static LobeShares lobe_shares(const LobeValues& lobes) {
-    const SampledSpectrum total = lobes.total();
-    LobeShares share;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (!(total[lane] > 0)) continue;
-      // Clamped: rounding of a sum of lobes, or a residual that takes from the diffuse lobe, must not make
-      // the specular one negative.
-      share.diffuse[lane] = std::clamp(lobes.diffuse[lane] / total[lane], Float(0), Float(1));
-      if constexpr (kFeatures.specular_parts) {
-        share.fresnel[lane] = lobes.fresnel[lane] / total[lane];
-        share.diffraction[lane] = lobes.diffraction[lane] / total[lane];
-      }
-    }
-    return share;
+  void split(const SampledSpectrum& radiance, const LobeShares& share) {
+    add_split<kParts>(sums_, radiance, share);
   }
 
   /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
@@ -243,7 +209,8 @@ class PathTracer {
     const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
     awaited_.radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
     if constexpr (kFeatures.lobe_layers) {
-      awaited_.share = has_share_ ? share_ : lobe_shares(evaluate_lobes(vertex.material, vertex.wo, wi, at));
+      awaited_.share =
+          has_share_ ? share_ : lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, at));
     }
     const Ray ray = shadow_ray(ray_origin(vertex.point, light->wi), *light);
     if constexpr (kFeatures.nested) {
@@ -344,7 +311,8 @@ class PathTracer {
     if (!sides_agree(vertex, wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
-        share_ = lobe_shares(evaluate_lobes(vertex.material, vertex.wo, s->wi, shading_point(vertex.point)));
+        share_ = lobe_shares<kParts>(
+            evaluate_lobes(vertex.material, vertex.wo, s->wi, shading_point(vertex.point)));
         has_share_ = true;
       }
     }

@@ -8,6 +8,7 @@
 
 #include "core/base/cost.h"
 #include "core/math/sampler.h"
+#include "renderer/flush_denormals.h"
 #include "renderer/kernels.h"
 #include "renderer/render.h"
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of a BSDF's value each lobe has, and radiance split by it: how light is parted into layers (ADR 0006).
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "core/spectra/lane_to_xyz.h"
+#include "materials/bsdf.h"
+#include "renderer/film.h"
+
+namespace spectrace {
+
+/// By lane.
+struct LobeShares {
+  SampledSpectrum diffuse;               ///< in [0, 1]; the rest is specular
+  SampledSpectrum fresnel, diffraction;  ///< signed; the rest of specular is residual
+};
+
+/// `kParts`: within specular, its Fresnel part, diffraction effect and residual too.
+template <bool kParts>
+LobeShares lobe_shares(const LobeValues& lobes) {
+  const SampledSpectrum total = lobes.total();
+  LobeShares share;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(total[lane] > 0)) continue;
+    // Clamped: rounding of a sum of lobes, or a residual that takes from the diffuse lobe, must not make the
+    // specular one negative.
+    share.diffuse[lane] = std::clamp(lobes.diffuse[lane] / total[lane], Float(0), Float(1));
+    if constexpr (kParts) {
+      share.fresnel[lane] = lobes.fresnel[lane] / total[lane];
+      share.diffraction[lane] = lobes.diffraction[lane] / total[lane];
+    }
+  }
+  return share;
+}
+
+/// Adds `radiance` to the lobes' layers of `sums`, by Layer.
+template <bool kParts>
+void add_split(std::span<LaneSums> sums, const SampledSpectrum& radiance, const LobeShares& share) {
+  const auto to = [&](Layer layer) -> LaneSums& { return sums[std::size_t(layer)]; };
+  const auto part = [](Float all, Float of_it) { return double(all) * double(of_it); };
+  const auto rest = [](Float all, Float of_it) { return double(all) - double(all) * double(of_it); };
+  to(Layer::kDiffuse).add(part, radiance, share.diffuse);
+  to(Layer::kSpecular).add(rest, radiance, share.diffuse);
+  if constexpr (kParts) {
+    const auto residual = [&](Float all, Float diffuse, Float fresnel, Float diffraction) {
+      return rest(all, diffuse) - part(all, fresnel) - part(all, diffraction);
+    };
+    to(Layer::kSpecularFresnel).add(part, radiance, share.fresnel);
+    to(Layer::kSpecularDiffraction).add(part, radiance, share.diffraction);
+    to(Layer::kSpecularResidual).add(residual, radiance, share.diffuse, share.fresnel, share.diffraction);
+  }
+}
+
+}  // namespace spectrace
