@@ -114,7 +114,7 @@ TileCounts render_tile(const Scene& scene, std::uint64_t seed, SampleRange sampl
           std::uint64_t(image_y) * std::uint64_t(scene.film.width) + std::uint64_t(image_x);
       PixelSums sums;
       for (std::uint64_t first = samples.first; first < samples.last;) {
-        // Packs begin at multiples of their size, whatever the range.
+        // Packs begin at multiples of their size: ranges that do so too are packed alike.
         const std::uint64_t end = std::min(samples.last, (first / kPacket + 1) * kPacket);
         for (; first < end; ++first) pack.add(Sampler(pixel, first, seed), image_x, image_y);
         pack.trace();

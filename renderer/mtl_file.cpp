@@ -12,18 +12,11 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "renderer/trimmed.h"
 
 namespace spectrace {
 
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
 
 /// Takes the first word off `text`.
 std::string_view take_word(std::string_view& text) {

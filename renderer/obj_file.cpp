@@ -12,19 +12,12 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "renderer/trimmed.h"
 #include "renderer/words_hash.h"
 
 namespace spectrace {
 
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
 
 using VertexKey = std::array<int, 3>;  // position, texture coordinate, normal; -1: none
 

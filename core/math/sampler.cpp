@@ -74,7 +74,7 @@ constexpr std::uint32_t kJointBlocks = 3;
 /// The Sobol' dimension of each number. Dimensions are not equally even together: an annealing over
 /// assignments has found the one whose counts in boxes of two and three numbers, over 16 to 1024 samples,
 /// vary least where numbers meet (a light's choice and point; a direction and the light found from there;
-/// ...): a third less than in the order of the dimensions. Those without a name stand for none.
+/// ...): 30 % less than in two orders chosen by hand. Those without a name stand for none.
 constexpr std::array<std::array<int, kBlock>, kJointBlocks> kJointDimensions{
     {{12, 10, 0, 1, 17, 14, 0, 0}, {4, 9, 11, 13, 2, 3, 18, 0}, {6, 7, 5, 15, 8, 16, 19, 0}}};
 /// Of a vertex with a sequence to itself.

@@ -114,8 +114,8 @@ enum class SpectrumRole {
 };
 
 /// Reads the JSON forms of docs/scene-format.md: a number; {"rgb": [r,g,b]}; {"wavelengths_nm": [...],
-/// "values": [...]}; {"file": "x.spd", "column": 1}; {"blackbody_K": T, "scale": s}; {"illuminant": "D65" |
-/// "A" | "E", "scale": s} (1 at 560 nm); {"sellmeier": {"b": [3], "c_um2": [3]}};
+/// "values": [...]}; {"file": "x.spd", "column": 1}; {"blackbody_K": T, "scale": s}; {"illuminant": "D65",
+/// "scale": s} (1 at 560 nm; the names: core/spectra/illuminants.h); {"sellmeier": {"b": [3], "c_um2": [3]}};
 /// {"cauchy": {"a": n, "b_um2": b, "c_um4": c}}. Every form takes "scale".
 /// Problems are recorded in the document.
 Spectrum parse_spectrum(const JsonValue& json, SpectrumRole role, const Spectrum& fallback = {});
