@@ -5,12 +5,9 @@
 
 #include <cstdint>
 
-#include "core/image/image.h"
-
 namespace spectrace::cli {
 
-std::string noise_note(const std::string& reference, const std::string& test) {
-  const Metadata of_reference = read_metadata(reference), of_test = read_metadata(test);
+std::string noise_note(const Metadata& of_reference, const Metadata& of_test) {
   if (!of_reference.contains("spectrace:seed") || !of_test.contains("spectrace:seed")) return {};
   for (const char* key : {"spectrace:seed", "spectrace:spp"}) {
     const auto in_reference = of_reference.find(key), in_test = of_test.find(key);

@@ -4,10 +4,12 @@
 
 #include <string>
 
+#include "core/image/image.h"
+
 namespace spectrace::cli {
 
-/// Of two image files: what in their headers says that they do not share their random numbers. Empty where
+/// Of two images: what in their headers says that they do not share their random numbers. Empty where
 /// they do, where they are of one model, or where nothing is known (pictures of other programs).
-std::string noise_note(const std::string& reference, const std::string& test);
+std::string noise_note(const Metadata& of_reference, const Metadata& of_test);
 
 }  // namespace spectrace::cli

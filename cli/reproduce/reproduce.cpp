@@ -17,6 +17,7 @@
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/grid_option.h"
+#include "cli/report/exposure.h"
 #include "cli/reproduce/material_study.h"
 #include "cli/reproduce/reference_scene.h"
 #include "cli/reproduce/study_page.h"

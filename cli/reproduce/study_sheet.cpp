@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/report/exposure.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/error_map.h"
 
@@ -109,18 +110,6 @@ class Sheet {
 };
 
 }  // namespace
-
-double exposure_of(const Image& rgb) {
-  constexpr double kWhitePoint = 0.98;
-  std::vector<float> values;
-  for (const float x : rgb.data) {
-    if (x > 0) values.push_back(x);  // the black behind says nothing
-  }
-  if (values.empty()) return 1;
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(kWhitePoint * double(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return 1 / double(*place);
-}
 
 Image study_sheet(const MaterialStudy& study) { return Sheet(study).draw(); }
 

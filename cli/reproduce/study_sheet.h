@@ -11,7 +11,4 @@ namespace spectrace::cli {
 /// and its components. PSNR and MAPE are inset.
 Image study_sheet(const MaterialStudy& study);
 
-/// The factor that brings a picture's 98th percentile to white.
-double exposure_of(const Image& rgb);
-
 }  // namespace spectrace::cli

@@ -55,7 +55,8 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
 void write_png(const std::filesystem::path& file, const Image& image, std::string_view layer = "",
                double exposure = 1);
 
-/// The same pixels as a JPEG inside a "data:" address, for pages that must stand alone.
+/// The same pixels inside a "data:" address, for pages that must stand alone; PNG where every pixel counts.
+std::string png_data_uri(const Image& image, std::string_view layer = "", double exposure = 1);
 std::string jpeg_data_uri(const Image& image, std::string_view layer = "", double exposure = 1);
 
 /// EXR (its first part, the data window), told by content; else what OpenImageIO reads by name: HDR, PNG,

@@ -158,6 +158,12 @@ std::vector<unsigned char> encode(const std::string& format, const Image& image,
   return encoded;
 }
 
+std::string data_uri(const std::string& format, const Image& image, std::string_view layer, double exposure) {
+  const std::vector<unsigned char> encoded = encode(format, image, layer, exposure, "page");
+  const OIIO::string_view bytes(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+  return fmt::format("data:image/{};base64,{}", format, OIIO::Strutil::base64_encode(bytes));
+}
+
 }  // namespace
 
 void write_png(const std::filesystem::path& file, const Image& image, std::string_view layer,
@@ -166,11 +172,12 @@ void write_png(const std::filesystem::path& file, const Image& image, std::strin
   write_file_atomically(file, std::as_bytes(std::span(encoded)));
 }
 
+std::string png_data_uri(const Image& image, std::string_view layer, double exposure) {
+  return data_uri("png", image, layer, exposure);
+}
+
 std::string jpeg_data_uri(const Image& image, std::string_view layer, double exposure) {
-  const std::vector<unsigned char> encoded = encode("jpeg", image, layer, exposure, "page");
-  const std::string_view bytes(reinterpret_cast<const char*>(encoded.data()), encoded.size());
-  return "data:image/jpeg;base64," +
-         OIIO::Strutil::base64_encode(OIIO::string_view(bytes.data(), bytes.size()));
+  return data_uri("jpeg", image, layer, exposure);
 }
 
 }  // namespace spectrace

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/base/error.h"
 
@@ -43,8 +44,22 @@ double ssim_of(const Moments& m, double c1, double c2) {
   return (2 * mean_product + c1) * (2 * covariance + c2) / ((mean_r2 + mean_t2 + c1) * (variances + c2));
 }
 
-/// Sum over all window positions inside one channel.
-double ssim_sum(const Image& reference, const Image& test, std::size_t channel, double data_range) {
+/// One channel of an image, and how wide its rows are.
+struct Plane {
+  int width = 0, height = 0;
+  std::vector<float> values;
+
+  Plane(const Image& image, std::size_t channel) : width(image.width), height(image.height) {
+    values.reserve(std::size_t(width) * std::size_t(height));
+    for (std::size_t i = channel; i < image.data.size(); i += image.channels.size()) {
+      values.push_back(image.data[i]);
+    }
+  }
+};
+
+/// The mean over all window positions inside the image.
+double mean_ssim(const Plane& reference, const Plane& test, double data_range) {
+  if (reference.width < kSsimWindow || reference.height < kSsimWindow) return kNan;
   static const Window weights = gaussian_window();
   const double c1 = (kSsimK1 * data_range) * (kSsimK1 * data_range);
   const double c2 = (kSsimK2 * data_range) * (kSsimK2 * data_range);
@@ -55,9 +70,11 @@ double ssim_sum(const Image& reference, const Image& test, std::size_t channel, 
   for (int y = 0; y < reference.height; ++y) {
     std::vector<Moments>& row = rows[y % kSsimWindow];
     row.assign(columns, Moments{});
+    const float* r_row = &reference.values[std::size_t(y) * reference.width];
+    const float* t_row = &test.values[std::size_t(y) * reference.width];
     for (int x = 0; x < columns; ++x) {
       for (int i = 0; i < kSsimWindow; ++i) {
-        const double r = reference.at(x + i, y, channel), t = test.at(x + i, y, channel), w = weights[i];
+        const double r = r_row[x + i], t = t_row[x + i], w = weights[i];
         row[x][0] += w * r;
         row[x][1] += w * t;
         row[x][2] += w * r * r;
@@ -75,47 +92,35 @@ double ssim_sum(const Image& reference, const Image& test, std::size_t channel, 
       sum += ssim_of(moments, c1, c2);
     }
   }
-  return sum;
+  return sum / (double(columns) * double(reference.height - kSsimWindow + 1));
 }
 
-double mean_ssim(const Image& reference, const Image& test, double data_range) {
-  if (reference.width < kSsimWindow || reference.height < kSsimWindow) return kNan;
-  double sum = 0;
-  for (std::size_t c = 0; c < reference.channels.size(); ++c) sum += ssim_sum(reference, test, c, data_range);
-  const double positions =
-      double(reference.width - kSsimWindow + 1) * double(reference.height - kSsimWindow + 1);
-  return sum / (positions * static_cast<double>(reference.channels.size()));
+bool all_finite(const Image& image, std::span<const std::size_t> channels) {
+  for (std::size_t pixel = 0; pixel < image.data.size(); pixel += image.channels.size()) {
+    for (const std::size_t c : channels) {
+      if (!std::isfinite(image.data[pixel + c])) return false;
+    }
+  }
+  return true;
 }
 
-bool all_finite(const Image& image) {
-  return std::all_of(image.data.begin(), image.data.end(), [](float x) { return std::isfinite(x); });
-}
-
-double used_data_range(const Image& reference, const MetricOptions& options) {
+double used_data_range(const Image& reference, std::span<const std::size_t> channels,
+                       const MetricOptions& options) {
   if (options.data_range > 0) return options.data_range;
-  const float peak = *std::max_element(reference.data.begin(), reference.data.end());
+  float peak = 0;
+  for (std::size_t pixel = 0; pixel < reference.data.size(); pixel += reference.channels.size()) {
+    for (const std::size_t c : channels) peak = std::max(peak, reference.data[pixel + c]);
+  }
   return peak > 0 ? peak : 1;
 }
 
-}  // namespace
+double psnr_db(double data_range, double mse) { return 10 * std::log10(data_range * data_range / mse); }
 
-Metrics compare_images(const Image& reference, const Image& test, const MetricOptions& options) {
-  SPECTRACE_CHECK(reference.width == test.width && reference.height == test.height);
-  SPECTRACE_CHECK(reference.channels.size() == test.channels.size() && !reference.data.empty());
+Metrics compare_planes(const Plane& reference, const Plane& test, double data_range,
+                       const MetricOptions& options) {
   Metrics m;
-  if (!all_finite(reference) || !all_finite(test)) {
-    return {.finite = false,
-            .mse = kNan,
-            .mae = kNan,
-            .rel_mse = kNan,
-            .mape = kNan,
-            .psnr_db = kNan,
-            .ssim = kNan,
-            .max_abs = kNan,
-            .data_range = kNan};
-  }
-  for (std::size_t i = 0; i < reference.data.size(); ++i) {
-    const double r = reference.data[i], difference = test.data[i] - r;
+  for (std::size_t i = 0; i < reference.values.size(); ++i) {
+    const double r = reference.values[i], difference = test.values[i] - r;
     const double square = difference * difference, magnitude = std::abs(difference);
     m.mse += square;
     m.mae += magnitude;
@@ -123,12 +128,69 @@ Metrics compare_images(const Image& reference, const Image& test, const MetricOp
     m.mape += magnitude / (std::abs(r) + options.mape_floor);
     m.max_abs = std::max(m.max_abs, magnitude);
   }
-  const double n = static_cast<double>(reference.data.size());
+  const double n = static_cast<double>(reference.values.size());
   for (double* sum : {&m.mse, &m.mae, &m.rel_mse, &m.mape}) *sum /= n;
-  m.data_range = used_data_range(reference, options);
-  m.psnr_db = 10 * std::log10(m.data_range * m.data_range / m.mse);
-  m.ssim = mean_ssim(reference, test, m.data_range);
+  m.data_range = data_range;
+  m.psnr_db = psnr_db(data_range, m.mse);
+  m.ssim = mean_ssim(reference, test, data_range);
   return m;
+}
+
+/// All channels have as many pixels, so that means of channels are means of all values.
+Metrics together(std::span<const Metrics> each, double data_range) {
+  Metrics m;
+  for (const Metrics& channel : each) {
+    m.mse += channel.mse;
+    m.mae += channel.mae;
+    m.rel_mse += channel.rel_mse;
+    m.mape += channel.mape;
+    m.ssim += channel.ssim;
+    m.max_abs = std::max(m.max_abs, channel.max_abs);
+  }
+  const double n = static_cast<double>(each.size());
+  for (double* sum : {&m.mse, &m.mae, &m.rel_mse, &m.mape, &m.ssim}) *sum /= n;
+  m.data_range = data_range;
+  m.psnr_db = psnr_db(data_range, m.mse);
+  return m;
+}
+
+constexpr Metrics kNotFinite{.finite = false,
+                             .mse = kNan,
+                             .mae = kNan,
+                             .rel_mse = kNan,
+                             .mape = kNan,
+                             .psnr_db = kNan,
+                             .ssim = kNan,
+                             .max_abs = kNan,
+                             .data_range = kNan};
+
+}  // namespace
+
+ChannelMetrics compare_channels(const Image& reference, std::span<const std::size_t> reference_channels,
+                                const Image& test, std::span<const std::size_t> test_channels,
+                                const MetricOptions& options) {
+  SPECTRACE_CHECK(reference.width == test.width && reference.height == test.height);
+  SPECTRACE_CHECK(reference_channels.size() == test_channels.size() && !reference_channels.empty() &&
+                  !reference.data.empty());
+  const std::size_t n = reference_channels.size();
+  if (!all_finite(reference, reference_channels) || !all_finite(test, test_channels)) {
+    return {kNotFinite, std::vector<Metrics>(n, kNotFinite)};
+  }
+  const double data_range = used_data_range(reference, reference_channels, options);
+  ChannelMetrics result;
+  for (std::size_t c = 0; c < n; ++c) {
+    result.each.push_back(compare_planes(Plane(reference, reference_channels[c]),
+                                         Plane(test, test_channels[c]), data_range, options));
+  }
+  result.together = together(result.each, data_range);
+  return result;
+}
+
+Metrics compare_images(const Image& reference, const Image& test, const MetricOptions& options) {
+  SPECTRACE_CHECK(reference.channels.size() == test.channels.size());
+  std::vector<std::size_t> all(reference.channels.size());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  return compare_channels(reference, all, test, all, options).together;
 }
 
 }  // namespace spectrace

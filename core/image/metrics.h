@@ -2,6 +2,10 @@
 // Image metrics in double precision. Each states its constants; any non-finite pixel makes `finite` false.
 #pragma once
 
+#include <cstddef>
+#include <span>
+#include <vector>
+
 #include "core/image/image.h"
 
 namespace spectrace {
@@ -28,5 +32,15 @@ struct Metrics {
 
 /// Both images: the same size and channel count (at least 11x11 for SSIM, else ssim is NaN); checked.
 Metrics compare_images(const Image& reference, const Image& test, const MetricOptions& options = {});
+
+struct ChannelMetrics {
+  Metrics together;           ///< as compare_images() of these channels alone
+  std::vector<Metrics> each;  ///< of one channel, with the data range of all of them
+};
+/// Of some channels, by their places in images that may have more: the first of the one against the first of
+/// the other, and so on; at least one. Checked: the images' sizes, the number of channels.
+ChannelMetrics compare_channels(const Image& reference, std::span<const std::size_t> reference_channels,
+                                const Image& test, std::span<const std::size_t> test_channels,
+                                const MetricOptions& options = {});
 
 }  // namespace spectrace

@@ -19,12 +19,6 @@ namespace {
 // As of a scene's range: beyond it the unit or a digit is wrong.
 constexpr NumberRange kWavelengths{.min = 100, .max = 10000};
 
-struct Channel {
-  double lambda_nm = 0;
-  std::size_t index = 0;
-  std::string name;
-};
-
 /// "550,000000nm" in nanometres. The comma stands for the point, which separates layers in EXR.
 std::optional<double> parse_wavelength(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789,eE+-";
@@ -45,40 +39,6 @@ std::string_view prefix_of(SpectralKind kind) { return kind == SpectralKind::kRe
 bool is_spectral(const std::string& channel, std::string_view prefix) {
   return channel.starts_with(prefix) && channel.size() > prefix.size() && channel[prefix.size()] >= '0' &&
          channel[prefix.size()] <= '9';
-}
-
-std::vector<Channel> find_channels(const Image& image, std::string_view prefix, const std::string& file) {
-  std::vector<Channel> found;
-  for (std::size_t i = 0; i < image.channels.size(); ++i) {
-    const std::string& name = image.channels[i];
-    if (!is_spectral(name, prefix)) continue;
-    const std::optional<double> lambda_nm = parse_wavelength(std::string_view(name).substr(prefix.size()));
-    if (!lambda_nm) {
-      throw InputError(
-          file, "",
-          fmt::format("channel \"{}\": expected a wavelength behind \"{}\", with a decimal comma and a "
-                      "unit: 550,000000nm",
-                      name, prefix));
-    }
-    if (!kWavelengths.contains(*lambda_nm)) {
-      throw InputError(file, "",
-                       fmt::format("channel \"{}\": {} nm is not {}", name, *lambda_nm, kWavelengths.text()));
-    }
-    found.push_back({*lambda_nm, i, name});
-  }
-  std::sort(found.begin(), found.end(),
-            [](const Channel& a, const Channel& b) { return a.lambda_nm < b.lambda_nm; });
-  for (std::size_t i = 1; i < found.size(); ++i) {
-    if (!(Float(found[i].lambda_nm) > Float(found[i - 1].lambda_nm))) {
-      throw InputError(
-          file, "",
-          fmt::format("channels \"{}\" and \"{}\" are of one wavelength", found[i - 1].name, found[i].name));
-    }
-  }
-  if (found.size() == 1) {
-    throw InputError(file, "", fmt::format("\"{}\" is its only wavelength: no spectrum", found[0].name));
-  }
-  return found;
 }
 
 }  // namespace
@@ -103,6 +63,42 @@ TabulatedSpectrum SpectralImage::spectrum(std::size_t texel) const {
   return {lambda_nm_, {begin, begin + std::ptrdiff_t(lambda_nm_.size())}};
 }
 
+std::vector<SpectralChannel> find_spectral_channels(const Image& image, SpectralKind kind,
+                                                    const std::string& file) {
+  const std::string_view prefix = prefix_of(kind);
+  std::vector<SpectralChannel> found;
+  for (std::size_t i = 0; i < image.channels.size(); ++i) {
+    const std::string& name = image.channels[i];
+    if (!is_spectral(name, prefix)) continue;
+    const std::optional<double> lambda_nm = parse_wavelength(std::string_view(name).substr(prefix.size()));
+    if (!lambda_nm) {
+      throw InputError(
+          file, "",
+          fmt::format("channel \"{}\": expected a wavelength behind \"{}\", with a decimal comma and a "
+                      "unit: 550,000000nm",
+                      name, prefix));
+    }
+    if (!kWavelengths.contains(*lambda_nm)) {
+      throw InputError(file, "",
+                       fmt::format("channel \"{}\": {} nm is not {}", name, *lambda_nm, kWavelengths.text()));
+    }
+    found.push_back({*lambda_nm, i, name});
+  }
+  std::sort(found.begin(), found.end(),
+            [](const SpectralChannel& a, const SpectralChannel& b) { return a.lambda_nm < b.lambda_nm; });
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    if (!(Float(found[i].lambda_nm) > Float(found[i - 1].lambda_nm))) {
+      throw InputError(
+          file, "",
+          fmt::format("channels \"{}\" and \"{}\" are of one wavelength", found[i - 1].name, found[i].name));
+    }
+  }
+  if (found.size() == 1) {
+    throw InputError(file, "", fmt::format("\"{}\" is its only wavelength: no spectrum", found[0].name));
+  }
+  return found;
+}
+
 bool has_spectral_channels(const Image& image, SpectralKind kind) {
   return std::any_of(image.channels.begin(), image.channels.end(),
                      [&](const std::string& name) { return is_spectral(name, prefix_of(kind)); });
@@ -110,10 +106,10 @@ bool has_spectral_channels(const Image& image, SpectralKind kind) {
 
 std::optional<SpectralImage> spectral_channels(const Image& image, SpectralKind kind,
                                                const std::string& file) {
-  const std::vector<Channel> found = find_channels(image, prefix_of(kind), file);
+  const std::vector<SpectralChannel> found = find_spectral_channels(image, kind, file);
   if (found.empty()) return std::nullopt;
   std::vector<Float> lambda_nm;
-  for (const Channel& channel : found) lambda_nm.push_back(static_cast<Float>(channel.lambda_nm));
+  for (const SpectralChannel& channel : found) lambda_nm.push_back(static_cast<Float>(channel.lambda_nm));
   const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   std::vector<float> values(pixels * found.size());
   for (std::size_t i = 0; i < pixels; ++i) {

@@ -47,9 +47,17 @@ class SpectralImage {
   std::vector<float> values_;
 };
 
+struct SpectralChannel {
+  double lambda_nm = 0;
+  std::size_t index = 0;  ///< in Image::channels
+  std::string name;
+};
+/// The channels of one kind, by wavelength: none, or at least two. Throws InputError naming `file` and the
+/// channel where a name or a wavelength is wrong.
+[[nodiscard]] std::vector<SpectralChannel> find_spectral_channels(const Image& image, SpectralKind kind,
+                                                                  const std::string& file);
 [[nodiscard]] bool has_spectral_channels(const Image& image, SpectralKind kind);
-/// The channels of one kind, by wavelength; nothing where the image has none. Throws InputError naming `file`
-/// and the channel where a name or a wavelength is wrong.
+/// The same with their values; nothing where the image has none.
 [[nodiscard]] std::optional<SpectralImage> spectral_channels(const Image& image, SpectralKind kind,
                                                              const std::string& file);
 

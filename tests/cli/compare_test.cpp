@@ -6,30 +6,16 @@
 
 #include "core/base/json.h"
 #include "core/image/image.h"
-#include "tests/support/run_program.h"
+#include "tests/cli/compare_images.h"
 
 namespace spectrace {
 namespace {
 
+using test::constant;
 using test::ProgramResult;
 using test::run_spectrace;
 
-Image constant(float value, std::vector<std::string> channels = {"R", "G", "B"}, int width = 16,
-               int height = 16) {
-  Image image(width, height, std::move(channels));
-  image.data.assign(image.data.size(), value);
-  return image;
-}
-
-class Compare : public testing::Test {
- protected:
-  /// Names a new EXR file.
-  std::string file(const std::string& name, const Image& image) {
-    write_exr(folder_ / name, image, {});
-    return (folder_ / name).string();
-  }
-  test::TemporaryFolder folder_;
-};
+class Compare : public test::CompareProgram {};
 
 TEST_F(Compare, PrintsFiguresWithTheirConstants) {
   const std::string r = file("r.exr", constant(0.5f)), t = file("t.exr", constant(0.25f));
@@ -117,7 +103,7 @@ TEST_F(Compare, NamesLayersThatOnlyOneImageHas) {
   EXPECT_TRUE(run_spectrace({"compare", r, t}).says("not compared: diffuse (only in " + r + ")"));
   const ProgramResult missing = run_spectrace({"compare", r, t, "--layer", "diffuse"});
   EXPECT_EQ(missing.exit_code, 3);
-  EXPECT_TRUE(missing.complains(t + ": has no channel \"diffuse.R\"")) << missing.errors;
+  EXPECT_TRUE(missing.complains(t + ": has no layer \"diffuse\", only beauty")) << missing.errors;
 }
 
 TEST_F(Compare, RefusesImagesOfDifferentSizesAndFilesThatAreNone) {

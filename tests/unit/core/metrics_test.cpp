@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -65,6 +66,34 @@ TEST(Metrics, AgreeWithScikitImage) {
   const Metrics unit = compare_images(synthetic_reference(), synthetic_test(), {.data_range = 1});
   EXPECT_NEAR(unit.psnr_db, 28.845138158955265, kRoundOff);
   EXPECT_NEAR(unit.ssim, 0.9937431622530429, kRoundOff);
+}
+
+TEST(Metrics, OfChosenChannelsAreThoseOfThemAlone) {
+  const Image r = synthetic_reference(), t = synthetic_test();
+  const std::vector<std::size_t> in_reference{0, 2}, in_test{2, 0};
+  const std::array<std::string, 2> first{"R", "B"}, second{"B", "R"};
+  const ChannelMetrics m = compare_channels(r, in_reference, t, in_test);
+  const Metrics alone = compare_images(r.select(first, "r"), t.select(second, "t"));
+  EXPECT_EQ(m.together.mse, alone.mse);
+  EXPECT_EQ(m.together.ssim, alone.ssim);
+  ASSERT_EQ(m.each.size(), 2U);
+  const Metrics one =
+      compare_images(r.select(std::array<std::string, 1>{"B"}, "r"),
+                     t.select(std::array<std::string, 1>{"R"}, "t"), {.data_range = alone.data_range});
+  EXPECT_EQ(m.each[1].ssim, one.ssim);
+  EXPECT_EQ(m.each[1].psnr_db, one.psnr_db);
+  EXPECT_NEAR((m.each[0].rel_mse + m.each[1].rel_mse) / 2, m.together.rel_mse, kRoundOff);
+  EXPECT_EQ(std::max(m.each[0].max_abs, m.each[1].max_abs), m.together.max_abs);
+}
+
+TEST(Metrics, AskOnlyTheChosenChannelsToBeFinite) {
+  Image broken = synthetic_reference();
+  broken.at(3, 3, 1) = kNotANumber;
+  const std::vector<std::size_t> without{0, 2}, with{0, 1};
+  EXPECT_TRUE(compare_channels(broken, without, broken, without).together.finite);
+  const ChannelMetrics bad = compare_channels(broken, with, broken, with);
+  EXPECT_FALSE(bad.together.finite);
+  EXPECT_TRUE(std::isnan(bad.each.at(0).mse));
 }
 
 TEST(Metrics, OfConstantImagesAreTheFormulas) {
