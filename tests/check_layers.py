@@ -33,7 +33,7 @@ DOORS = {
 }
 
 # Of the platform, not third parties: system calls and intrinsics.
-PLATFORM = re.compile(r"(sys|linux)/\w+\.h|(unistd|fcntl|signal|poll|spawn|dirent|errno|[a-z]*intrin)\.h")
+PLATFORM = re.compile(r"(sys|linux)/\w+\.h|(unistd|fcntl|signal|poll|netdb|spawn|dirent|errno|[a-z]*intrin)\.h")
 STANDARD = re.compile(r"[a-z_0-9]+")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

@@ -135,6 +135,7 @@ TEST(ZTest, RejectsWhatIsNotFinite) {
       (noisy.*where).at(1, 2, 0) = bad;
       const bool hides = where == &Noisy::reference_variance && bad == kInf;  // every value accepts
       EXPECT_EQ(noisy.result().accepted_share, hides ? 1 : 255.0 / 256);
+      EXPECT_EQ(std::isinf(noisy.result().largest_z), !hides);
     }
   }
 }
