@@ -30,6 +30,7 @@ constexpr const char* kExamples =
 struct Arguments {
   std::string input, output;
   AcquisitionOptions options;
+  ProgressStyle progress = ProgressStyle::kAuto;
 };
 
 ExitCode acquire_command(const Arguments& arguments) {
@@ -38,7 +39,7 @@ ExitCode acquire_command(const Arguments& arguments) {
   const Material material = build_material(description);
   AcquisitionOptions options = arguments.options;
   options.description = "Virtual measurement of " + description.name;
-  ConsoleProgress progress;
+  ConsoleProgress progress(arguments.progress);
   try {
     const MeasuredTables tables = acquire(material, options, progress);
     measured_to_tensors(tables).write(arguments.output);
@@ -78,6 +79,7 @@ void add_acquire(CLI::App& app, Action& chosen) {
   command->add_option("--table", options.table_size, "side of the tables of spectra")
       ->check(CLI::Range(4, 256))
       ->capture_default_str();
+  add_progress_option(*command, arguments->progress);
   command->callback([arguments, command, &chosen] {
     if (arguments->options.symmetry != 1 && arguments->options.azimuths == 1) {
       throw CLI::ValidationError(command->get_name(), "--symmetry needs --phi");

@@ -32,6 +32,7 @@ struct Arguments {
   std::optional<int> spp;
   int threads = 0;
   bool layers = false;
+  ProgressStyle progress = ProgressStyle::kAuto;
 };
 
 /// As Linux names it; empty where it does not say.
@@ -83,7 +84,7 @@ InspectReport report_of(const Arguments& arguments, const Throughput& t) {
 }
 
 ExitCode bench_command(const Arguments& arguments) {
-  ConsoleProgress progress;
+  ConsoleProgress progress(arguments.progress);
   if (!arguments.json.empty()) require_folder_of(arguments.json);
   const Scene scene = build_scene(load_scene(arguments.scene), progress);
   const Throughput measured = measure_throughput(
@@ -110,6 +111,7 @@ void add_bench(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_flag("--layers", arguments->layers, "with diffuse, specular, emission and background apart");
   command->add_option("--json", arguments->json, "also write the figures to this file");
+  add_progress_option(*command, arguments->progress);
   command->footer(kNotes);
   command->callback([&chosen, arguments] { chosen = [arguments] { return bench_command(*arguments); }; });
 }

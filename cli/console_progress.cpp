@@ -4,16 +4,48 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
+#include <limits>
+#include <map>
+
+#include "core/base/json.h"
 
 namespace spectrace::cli {
 
 namespace {
-constexpr std::chrono::milliseconds kRefresh{100};  // faster than the eye follows costs terminals time
-constexpr std::chrono::seconds kLogRefresh{10};     // a log of an hour's work stays short enough to read
+
+constexpr std::chrono::milliseconds kRefresh{100};       // faster than the eye follows costs terminals time
+constexpr std::chrono::milliseconds kLogRefresh{10000};  // a log of an hour's work stays short enough to read
+constexpr std::chrono::milliseconds kJsonRefresh{1000};  // a program that shows a bar wants no more
+
+std::string json_progress(std::string_view stage, double done, double total, double elapsed_s,
+                          double remaining_s) {
+  JsonWriter json;
+  json.begin_object();
+  json.member("stage", stage);
+  json.member("done", done);
+  json.member("total", total);
+  json.member("elapsed_s", elapsed_s);
+  json.member("remaining_s", remaining_s);
+  json.end_object();
+  return json.line();
+}
+
+std::string json_note(std::string_view text) {
+  JsonWriter json;
+  json.begin_object();
+  json.member("note", text);
+  json.end_object();
+  return json.line();
+}
+
 }  // namespace
 
-ConsoleProgress::ConsoleProgress() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+ConsoleProgress::ConsoleProgress(ProgressStyle style)
+    : form_(style == ProgressStyle::kJson                                 ? Form::kJson
+            : style == ProgressStyle::kAuto && isatty(STDERR_FILENO) == 1 ? Form::kTerminal
+                                                                          : Form::kLines) {}
 
 ConsoleProgress::~ConsoleProgress() { clear_line(); }
 
@@ -22,27 +54,43 @@ void ConsoleProgress::finish() {
   clear_line();
 }
 
+bool ConsoleProgress::is_due(Clock::time_point now, bool is_done) const {
+  switch (form_) {
+    case Form::kTerminal:
+      return now - last_shown_ >= kRefresh;
+    case Form::kLines:
+      return now - last_shown_ >= kLogRefresh;
+    case Form::kJson:
+      // A program is told of each end, so that its bar does not stop short.
+      return is_done || now - last_shown_ >= kJsonRefresh;
+  }
+  return false;
+}
+
 void ConsoleProgress::update(std::string_view stage, double done, double total) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   if (stage != stage_) {
     stage_ = stage;
     stage_start_ = now;
-    if (!is_terminal_) last_shown_ = now;  // work shorter than the interval leaves no line
+    if (form_ == Form::kLines) last_shown_ = now;  // work shorter than the interval leaves no line
   }
-  if (now - last_shown_ < (is_terminal_ ? Clock::duration(kRefresh) : Clock::duration(kLogRefresh))) {
-    return;
-  }
+  if (!is_due(now, done >= total)) return;
   last_shown_ = now;
   const double share = done / total;
   const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
-  const std::string left =
-      share > 0 ? fmt::format("{:.0f} s left", elapsed_s / share * (1 - share)) : std::string();
-  if (is_terminal_) {
-    fmt::print(stderr, "\r\033[K{} {:3.0f} %  {}", stage_, 100 * share, left);
-    line_shown_ = true;
+  const double left_s =
+      share > 0 ? elapsed_s / share * (1 - share) : std::numeric_limits<double>::quiet_NaN();
+  if (form_ == Form::kJson) {
+    fmt::print(stderr, "{}", json_progress(stage_, done, total, elapsed_s, left_s));
   } else {
-    fmt::print(stderr, "{} {:.0f} %  {}\n", stage_, 100 * share, left);
+    const std::string left = std::isnan(left_s) ? std::string() : fmt::format("{:.0f} s left", left_s);
+    if (form_ == Form::kTerminal) {
+      fmt::print(stderr, "\r\033[K{} {:3.0f} %  {}", stage_, 100 * share, left);
+      line_shown_ = true;
+    } else {
+      fmt::print(stderr, "{} {:.0f} %  {}\n", stage_, 100 * share, left);
+    }
   }
   std::fflush(stderr);
 }
@@ -50,12 +98,28 @@ void ConsoleProgress::update(std::string_view stage, double done, double total) 
 void ConsoleProgress::note(std::string_view text) {
   const std::lock_guard lock(mutex_);
   clear_line();
-  fmt::print(stderr, "{}\n", text);
+  if (form_ == Form::kJson) {
+    fmt::print(stderr, "{}", json_note(text));
+  } else {
+    fmt::print(stderr, "{}\n", text);
+  }
 }
 
 void ConsoleProgress::clear_line() {
   if (line_shown_) fmt::print(stderr, "\r\033[K");
   line_shown_ = false;
+}
+
+void add_progress_option(CLI::App& command, ProgressStyle& style) {
+  const std::map<std::string, ProgressStyle> styles{
+      {"auto", ProgressStyle::kAuto}, {"plain", ProgressStyle::kPlain}, {"json", ProgressStyle::kJson}};
+  command
+      .add_option(
+          "--progress", style,
+          "on standard error: auto (a line that rewrites itself on a terminal, else plain), plain, json "
+          "(a line a second: stage, done, total, elapsed_s, remaining_s)")
+      ->transform(CLI::CheckedTransformer(styles).description(""))
+      ->type_name("auto|plain|json");
 }
 
 }  // namespace spectrace::cli

@@ -39,6 +39,7 @@ struct Arguments {
   bool layer_pngs = false;
   bool beauty_only = false;
   double exposure = 1;
+  ProgressStyle progress = ProgressStyle::kAuto;
 };
 
 /// Where separated materials wait for the next run: the user's cache (XDG Base Directory Specification).
@@ -143,7 +144,7 @@ void write_images(const fs::path& file, const Image& image, const Metadata& meta
 }
 
 ExitCode render_command(const Arguments& arguments) {
-  ConsoleProgress progress;
+  ConsoleProgress progress(arguments.progress);
   const fs::path file = output_file(arguments);
   SceneDesc description = load_scene(arguments.scene);
   if ((!arguments.separate.empty() || arguments.paired) &&
@@ -203,6 +204,7 @@ void add_render(CLI::App& app, Action& chosen) {
   app.add_flag("--layer-pngs", arguments->layer_pngs, "also write -diffuse.png and -specular.png");
   app.add_flag("--beauty-only", arguments->beauty_only,
                "leave out diffuse, specular, emission and background: faster");
+  add_progress_option(app, arguments->progress);
   app.add_flag("--strict", arguments->strict, "exit with 1 if any sample was invalid (not finite, negative)");
   app.callback([&app, &chosen, arguments] {
     if (arguments->scene.empty() || !app.get_subcommands().empty()) {

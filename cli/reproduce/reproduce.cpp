@@ -50,6 +50,7 @@ struct Arguments {
   std::string folder, report, environment;
   int height = 144;
   StudyOptions study;
+  ProgressStyle progress = ProgressStyle::kAuto;
 };
 
 std::vector<fs::path> files_of(const fs::path& folder) {
@@ -255,7 +256,7 @@ class Report {
 
 ExitCode reproduce_command(const Arguments& arguments) {
   const std::vector<fs::path> files = files_of(arguments.folder);
-  ConsoleProgress progress;
+  ConsoleProgress progress(arguments.progress);
   Report report(arguments);
   report.run(files, progress);
   progress.finish();
@@ -292,6 +293,7 @@ void add_reproduce(CLI::App& app, Action& chosen) {
   command->add_option("--threads", arguments->study.pictures.threads, "threads to use, 0 = all cores")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
+  add_progress_option(*command, arguments->progress);
   command->callback([arguments, &chosen] { chosen = [arguments] { return reproduce_command(*arguments); }; });
 }
 

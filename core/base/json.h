@@ -151,6 +151,8 @@ class JsonWriter {
   }
   /// The text so far, indented by two spaces; all objects and arrays must be closed.
   [[nodiscard]] std::string text() const;
+  /// The same in one line, for files that have an object a line.
+  [[nodiscard]] std::string line() const;
 
  private:
   struct Impl;

@@ -39,7 +39,7 @@ struct JsonWriter::Impl {
 
 namespace {
 
-std::string scalar_text(const Tree& value) {
+std::string line_text(const Tree& value) {
   // Text that is not UTF-8 (a file name may be anything) must not make a report fail.
   return value.dump(-1, ' ', false, Tree::error_handler_t::replace);
 }
@@ -48,7 +48,7 @@ std::string scalar_text(const Tree& value) {
 void print(const Tree& value, std::size_t indent, std::string& out) {
   const auto is_plain = [](const Tree& v) { return !v.is_structured(); };
   if (is_plain(value) || value.empty()) {
-    out += scalar_text(value);
+    out += line_text(value);
     return;
   }
   const bool one_line = value.is_array() && std::all_of(value.begin(), value.end(), is_plain);
@@ -58,7 +58,7 @@ void print(const Tree& value, std::size_t indent, std::string& out) {
   for (const auto& [key, element] : value.items()) {
     if (!is_first) out += ',';
     if (!is_first || !one_line) out += line_break;
-    if (value.is_object()) out += scalar_text(key) + ": ";
+    if (value.is_object()) out += line_text(key) + ": ";
     print(element, indent + 1, out);
     is_first = false;
   }
@@ -86,6 +86,11 @@ void JsonWriter::value(std::int64_t x) { impl_->place() = x; }
 void JsonWriter::value(bool x) { impl_->place() = x; }
 void JsonWriter::value(std::string_view text) { impl_->place() = text; }
 void JsonWriter::null() { impl_->place() = nullptr; }
+
+std::string JsonWriter::line() const {
+  SPECTRACE_CHECK(impl_->has_root && impl_->open.empty());
+  return line_text(impl_->root) + '\n';
+}
 
 std::string JsonWriter::text() const {
   SPECTRACE_CHECK(impl_->has_root && impl_->open.empty());

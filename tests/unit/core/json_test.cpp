@@ -256,6 +256,15 @@ TEST(JsonWriter, WritesWhatTheReaderReads) {
   EXPECT_EQ(document.root().get("number").number(0), 0.1);
 }
 
+TEST(JsonWriter, WritesALine) {
+  JsonWriter writer;
+  writer.begin_object();
+  writer.member("text", "two\nlines");
+  writer.member("number", 0.1);
+  writer.end_object();
+  EXPECT_EQ(writer.line(), "{\"text\":\"two\\nlines\",\"number\":0.1}\n");
+}
+
 TEST(JsonWriter, ChecksItsUse) {
   JsonWriter writer;
   EXPECT_THROW(static_cast<void>(writer.text()), InternalError);

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What long work says while it lasts.
+#include "core/base/json.h"
+#include "tests/cli/program.h"
+
+namespace spectrace::test {
+namespace {
+
+class ProgressOption : public Program {};
+
+TEST_F(ProgressOption, JsonGivesAnObjectALine) {
+  write_lambert_scene("scene.json");
+  const ProgramResult result =
+      run({"scene.json", "-o", "out.exr", "--progress", "json", "--separate", "sun"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  bool has_end = false, has_note = false;
+  for (const std::string& line : result.error_lines()) {
+    JsonDocument document = JsonDocument::parse(line, "line");
+    const JsonValue root = document.root();
+    if (root.get("note").exists()) {
+      has_note = has_note || root.get("note").string().find("no measured material") != std::string::npos;
+      continue;
+    }
+    const double done = root.require("done").number(-1, kNonNegative),
+                 total = root.require("total").number(0, kPositive);
+    EXPECT_GE(root.require("elapsed_s").number(-1), 0);
+    EXPECT_FALSE(root.require("stage").string().empty());
+    EXPECT_TRUE(root.require("remaining_s").exists());
+    if (done == total) {
+      EXPECT_EQ(root.require("remaining_s").number(-1), 0);
+      has_end = true;
+    }
+    document.throw_if_wrong();
+  }
+  EXPECT_TRUE(has_end) << result.errors;
+  EXPECT_TRUE(has_note) << result.errors;
+}
+
+TEST_F(ProgressOption, OfShortWorkInALogIsSilent) {
+  write_lambert_scene("scene.json");
+  for (const char* style : {"auto", "plain"}) {
+    EXPECT_EQ(run({"scene.json", "-o", "out.exr", "--progress", style}).errors, "") << style;
+  }
+  expect_usage_error({"scene.json", "-o", "out.exr", "--progress", "loud"});
+}
+
+}  // namespace
+}  // namespace spectrace::test
