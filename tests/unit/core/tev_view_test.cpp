@@ -260,9 +260,8 @@ TEST(TevView, NotesOnceThatNobodyListens) {
   EXPECT_FALSE(view.wants_picture());
 }
 
-// A broken pipe would end this program by SIGPIPE.
 TEST(TevView, GoesQuietWhenTevCloses) {
-  FakeTev tev(1);  // closes after the first packet
+  FakeTev tev(1);  // closes after the first packet, with more on its way
   Notes notes;
   TevView view(tev.address(), "scene", notes, kAtOnce);
   Image image = gradient(1024, 1024);  // 21 MB: more than sockets buffer
@@ -274,7 +273,25 @@ TEST(TevView, GoesQuietWhenTevCloses) {
   EXPECT_NE(notes.lines().front().find("sending failed"), std::string::npos) << notes.lines().front();
 }
 
-class Deaf {  // accepts by its backlog and never reads
+// Sending to one who has read all and gone would end this program by SIGPIPE.
+TEST(TevView, SurvivesABrokenPipe) {
+  Image image = gradient(8, 8);
+  FakeTev tev(tev_create("scene", image).size() + tev_update("scene", image, {0, 0, 8, 8}).size());
+  Notes notes;
+  TevView view(tev.address(), "scene", notes, kAtOnce);
+  view.finish(image);
+  EXPECT_EQ(tev.viewer().tiles.size(), 1U);
+  // The first packets that are sent now are lost without a word.
+  for (int i = 0; i < 1000 && notes.lines().empty(); ++i) {
+    image.at(1, 1, 0) = static_cast<float>(-i);
+    view.finish(image);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ASSERT_EQ(notes.lines().size(), 1U);
+  EXPECT_NE(notes.lines().front().find("Broken pipe"), std::string::npos) << notes.lines().front();
+}
+
+class Deaf {  // takes what its buffers hold and never reads
  public:
   Deaf() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
@@ -286,13 +303,22 @@ class Deaf {  // accepts by its backlog and never reads
     ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
     port_ = ntohs(address.sin_port);
   }
-  ~Deaf() { ::close(listener_); }
+  ~Deaf() {
+    if (connection_ >= 0) ::close(connection_);
+    ::close(listener_);
+  }
   Deaf(const Deaf&) = delete;
   Deaf& operator=(const Deaf&) = delete;
   [[nodiscard]] TevAddress address() const { return {"127.0.0.1", port_}; }
+  /// Until the first bytes are there.
+  void wait() {
+    connection_ = ::accept(listener_, nullptr, nullptr);
+    char first = 0;
+    EXPECT_EQ(::recv(connection_, &first, 1, MSG_PEEK), 1);
+  }
 
  private:
-  int listener_;
+  int listener_, connection_ = -1;
   std::uint16_t port_ = 0;
 };
 
@@ -306,12 +332,13 @@ TEST(TevView, LosesPatienceWithOneWhoDoesNotRead) {
 }
 
 TEST(TevView, EndsWhileItSends) {
-  const Deaf deaf;
+  Deaf deaf;
   Notes notes;
   {
     // An hour of patience: without giving up at the end the test would take it.
     TevView view(deaf.address(), "scene", notes, {.interval = {}, .patience = std::chrono::hours(1)});
     view.show(gradient(1024, 1024));
+    deaf.wait();
   }
   EXPECT_TRUE(notes.lines().empty()) << "an end is no failure";
 }
