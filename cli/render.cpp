@@ -17,6 +17,7 @@
 #include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/error.h"
+#include "core/image/texture_cache.h"
 #include "separation/choose_model.h"
 
 namespace spectrace::cli {
@@ -40,6 +41,7 @@ struct Arguments {
   bool beauty_only = false;
   double exposure = 1;
   ProgressStyle progress = ProgressStyle::kAuto;
+  std::size_t texture_cache = kTextureCacheMiB;
 };
 
 /// Where separated materials wait for the next run: the user's cache (XDG Base Directory Specification).
@@ -146,6 +148,7 @@ void write_images(const fs::path& file, const Image& image, const Metadata& meta
 ExitCode render_command(const Arguments& arguments) {
   ConsoleProgress progress(arguments.progress);
   const fs::path file = output_file(arguments);
+  set_texture_cache_limit(arguments.texture_cache);
   SceneDesc description = load_scene(arguments.scene);
   if ((!arguments.separate.empty() || arguments.paired) &&
       !separate_materials(description, arguments, progress)) {
@@ -200,6 +203,10 @@ void add_render(CLI::App& app, Action& chosen) {
                  "folder that keeps separated materials; default: ~/.cache/spectrace");
   app.add_option("--exposure", arguments->exposure, "factor on the PNG, not on the EXR")
       ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--texture-cache", arguments->texture_cache,
+                 "mebibytes of texture tiles kept in memory; changes no bit of the image")
+      ->check(CLI::Range(10, 1 << 24))
       ->capture_default_str();
   app.add_flag("--layer-pngs", arguments->layer_pngs, "also write -diffuse.png and -specular.png");
   app.add_flag("--beauty-only", arguments->beauty_only,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/image/footprint.h"
 #include "core/math/vec.h"
 #include "core/spectra/sampled_spectrum.h"
 #include "core/spectra/sampled_wavelengths.h"
@@ -17,6 +18,8 @@ namespace spectrace {
 struct ShadingPoint {
   const SampledWavelengths& lambda;
   Vec2 uv{};
+  /// What textures are averaged over; a reference, since most materials ask for none.
+  const Footprint& footprint = kPointFootprint;
   /// 1 where the texture's v grows towards the frame's +y, -1 where it is mirrored: for normal maps.
   Float v_sign = 1;
 };

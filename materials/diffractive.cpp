@@ -39,7 +39,7 @@ Float MicroRoughness::sample_radius(Float u, Float lambda_nm) const {
 
 Diffractive::Mix Diffractive::mix(Vec3 wo, const ShadingPoint& at) const {
   const SampledSpectrum specular = spectrace::reflectance(fresnel, wo.z, at.lambda) * specular_scale;
-  Mix m{.diffuse_albedo = reflectance.sample(at.lambda, at.uv) * diffuse_scale};
+  Mix m{.diffuse_albedo = reflectance.sample(at.lambda, at.uv, at.footprint) * diffuse_scale};
   m.diffuse = m.diffuse_albedo.average();
   for (int k = 0; k < kLanes; ++k) {
     const Float share = micro.diffracted(wo.z, at.lambda.lambda_nm(k));
@@ -85,7 +85,8 @@ BsdfValue Diffractive::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const 
 
 LobeValues Diffractive::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
-  return lobes(reflectance.sample(at.lambda, at.uv) * diffuse_scale, ggx.reflect(wo, wi), wo, wi, at);
+  return lobes(reflectance.sample(at.lambda, at.uv, at.footprint) * diffuse_scale, ggx.reflect(wo, wi), wo,
+               wi, at);
 }
 
 std::optional<BsdfSample> Diffractive::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {

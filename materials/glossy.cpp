@@ -19,7 +19,7 @@ Parts parts(const Glossy& g, const SampledSpectrum& diffuse_albedo, const Ggx::R
 }
 
 SampledSpectrum scaled_albedo(const Glossy& g, const ShadingPoint& at) {
-  return g.reflectance.sample(at.lambda, at.uv) * g.diffuse_scale;
+  return g.reflectance.sample(at.lambda, at.uv, at.footprint) * g.diffuse_scale;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ Vec3 sample_cosine_hemisphere(Vec2 u) {
 BsdfValue Lambert::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
   if (wo.z <= 0 || wi.z <= 0) return {};
   const Float pdf = wi.z * kInvPi;
-  return {reflectance.sample(at.lambda, at.uv) * pdf, pdf};
+  return {reflectance.sample(at.lambda, at.uv, at.footprint) * pdf, pdf};
 }
 
 LobeValues Lambert::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
@@ -24,7 +24,7 @@ LobeValues Lambert::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) con
 std::optional<BsdfSample> Lambert::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
   if (wo.z <= 0) return std::nullopt;
   const Vec3 wi = sample_cosine_hemisphere(u.direction);
-  const SampledSpectrum albedo = reflectance.sample(at.lambda, at.uv);
+  const SampledSpectrum albedo = reflectance.sample(at.lambda, at.uv, at.footprint);
   if (wi.z <= 0 || albedo.is_zero()) return std::nullopt;
   return BsdfSample{.wi = wi, .weight = albedo, .pdf = wi.z * kInvPi, .lobe = Lobe::kDiffuse};
 }

@@ -6,14 +6,14 @@
 namespace spectrace {
 
 BsdfValue Masked::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
-  const Float opacity = opacity_.at(at.uv);
+  const Float opacity = opacity_.at(at.uv, at.footprint);
   if (opacity <= 0) return {};
   const BsdfValue value = material_.evaluate(wo, wi, at);
   return {value.value_cos * opacity, value.pdf * opacity};
 }
 
 LobeValues Masked::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
-  const Float opacity = opacity_.at(at.uv);
+  const Float opacity = opacity_.at(at.uv, at.footprint);
   if (opacity <= 0) return {};
   const LobeValues lobes = material_.evaluate_lobes(wo, wi, at);
   return {.diffuse = lobes.diffuse * opacity,
@@ -23,7 +23,7 @@ LobeValues Masked::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) cons
 }
 
 std::optional<BsdfSample> Masked::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
-  const Float opacity = opacity_.at(at.uv);
+  const Float opacity = opacity_.at(at.uv, at.footprint);
   if (opacity < 1 && (opacity <= 0 || u.lobe >= opacity)) {
     if (wo.z == 0) return std::nullopt;
     return BsdfSample{.wi = -wo,
@@ -40,7 +40,7 @@ std::optional<BsdfSample> Masked::sample(Vec3 wo, const BsdfRandom& u, const Sha
 }
 
 Float Masked::pass_through(bool from_front, const ShadingPoint& at) const {
-  const Float opacity = opacity_.at(at.uv);
+  const Float opacity = opacity_.at(at.uv, at.footprint);
   return 1 - opacity + opacity * material_.pass_through(from_front, at);
 }
 

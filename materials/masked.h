@@ -22,7 +22,7 @@ class Masked {
   [[nodiscard]] bool is_delta() const { return material_.is_delta(); }
   [[nodiscard]] Float pass_through(bool from_front, const ShadingPoint& at) const;
 
-  [[nodiscard]] bool is_textured() const { return opacity_.is_textured(); }
+  [[nodiscard]] const auto& texture() const { return opacity_; }
   [[nodiscard]] std::array<const NestedMaterial*, 1> parts() const { return {&material_}; }
 
  private:

@@ -6,7 +6,7 @@
 namespace spectrace {
 
 BsdfValue Mix::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
-  const Float w = weight_.at(at.uv);
+  const Float w = weight_.at(at.uv, at.footprint);
   // A material that covers nothing is not asked: it costs nothing, and its rounding leaves no trace.
   if (w <= 0) return first_.evaluate(wo, wi, at);
   if (w >= 1) return second_.evaluate(wo, wi, at);
@@ -15,7 +15,7 @@ BsdfValue Mix::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
 }
 
 LobeValues Mix::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
-  const Float w = weight_.at(at.uv);
+  const Float w = weight_.at(at.uv, at.footprint);
   if (w <= 0) return first_.evaluate_lobes(wo, wi, at);
   if (w >= 1) return second_.evaluate_lobes(wo, wi, at);
   const LobeValues a = first_.evaluate_lobes(wo, wi, at), b = second_.evaluate_lobes(wo, wi, at);
@@ -26,7 +26,7 @@ LobeValues Mix::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
 }
 
 std::optional<BsdfSample> Mix::sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const {
-  const Float w = weight_.at(at.uv);
+  const Float w = weight_.at(at.uv, at.footprint);
   if (w <= 0) return first_.sample(wo, u, at);
   if (w >= 1) return second_.sample(wo, u, at);
   const bool choose_second = u.lobe < w;
@@ -47,7 +47,8 @@ std::optional<BsdfSample> Mix::sample(Vec3 wo, const BsdfRandom& u, const Shadin
 }
 
 Float Mix::pass_through(bool from_front, const ShadingPoint& at) const {
-  return lerp(first_.pass_through(from_front, at), second_.pass_through(from_front, at), weight_.at(at.uv));
+  return lerp(first_.pass_through(from_front, at), second_.pass_through(from_front, at),
+              weight_.at(at.uv, at.footprint));
 }
 
 }  // namespace spectrace

@@ -21,7 +21,7 @@ class Mix {
   [[nodiscard]] bool is_delta() const { return first_.is_delta() && second_.is_delta(); }
   [[nodiscard]] Float pass_through(bool from_front, const ShadingPoint& at) const;
 
-  [[nodiscard]] bool is_textured() const { return weight_.is_textured(); }
+  [[nodiscard]] const auto& texture() const { return weight_; }
   [[nodiscard]] std::array<const NestedMaterial*, 2> parts() const { return {&first_, &second_}; }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 /// Half a turn about the frame's x, the tangent: what the renderer does to see a back as a front.
 Vec3 turned(Vec3 w) { return {w.x, -w.y, -w.z}; }
 ShadingPoint turned(const ShadingPoint& at) {
-  return {.lambda = at.lambda, .uv = at.uv, .v_sign = -at.v_sign};
+  return {.lambda = at.lambda, .uv = at.uv, .footprint = at.footprint, .v_sign = -at.v_sign};
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr Float kMinCosine = Float(1e-3);
 
 /// Around the bent normal, with x along u.
 Frame bent_frame(const NormalTexture& normals, Vec3 wo, const ShadingPoint& at) {
-  Vec3 n = normals.at(at.uv);
+  Vec3 n = normals.at(at.uv, at.footprint);
   n.y *= at.v_sign;
   const Float side = wo.z < 0 ? Float(-1) : Float(1);
   const Float cosine = dot(wo, n) * side;

@@ -21,7 +21,7 @@ class NormalMapped {
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return material_.is_delta(); }
-  [[nodiscard]] bool is_textured() const { return true; }
+  [[nodiscard]] const auto& texture() const { return normals_; }
   [[nodiscard]] Float pass_through(bool from_front, const ShadingPoint& at) const {
     return material_.pass_through(from_front, at);
   }

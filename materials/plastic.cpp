@@ -28,7 +28,7 @@ Plastic::Plastic(Texture reflectance, Spectrum eta, Float alpha)
 Plastic::View Plastic::view(Vec3 wo, const ShadingPoint& at) const {
   View v;
   v.eta = eta_.sample(at.lambda);
-  const SampledSpectrum rho = reflectance_.sample(at.lambda, at.uv);
+  const SampledSpectrum rho = reflectance_.sample(at.lambda, at.uv, at.footprint);
   SampledSpectrum diffuse_albedo;
   for (int i = 0; i < kLanes; ++i) {
     v.coat_albedo[i] = albedo_->at(wo.z, v.eta[i]);

@@ -31,7 +31,7 @@ class Plastic {
   [[nodiscard]] bool is_delta() const { return false; }
   [[nodiscard]] bool has_delta_lobe() const { return alpha_ == 0; }
 
-  [[nodiscard]] bool is_textured() const { return reflectance_.is_textured(); }
+  [[nodiscard]] const auto& texture() const { return reflectance_; }
   [[nodiscard]] Float alpha() const { return alpha_; }
 
  private:

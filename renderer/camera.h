@@ -3,6 +3,7 @@
 
 #include "core/math/math.h"
 #include "renderer/geometry.h"
+#include "renderer/ray_cone.h"
 #include "renderer/scene_desc.h"
 
 namespace spectrace {
@@ -25,9 +26,15 @@ class Camera {
     down_ = cross(forward_, right_);
     const Float size =
         is_orthographic_ ? camera.view_size : 2 * std::tan(degrees_to_radians(camera.fov_deg) / 2);
-    const Float pixel = size / std::min(width_, height_);
-    step_x_ = right_ * pixel;
-    step_y_ = down_ * pixel;
+    pixel_ = size / std::min(width_, height_);
+    step_x_ = right_ * pixel_;
+    step_y_ = down_ * pixel_;
+  }
+
+  /// What a ray through the film stands for: as wide as a pixel's narrower side seen along the ray.
+  [[nodiscard]] RayCone cone(const Ray& ray) const {
+    if (is_orthographic_) return {pixel_, 0};
+    return {0, pixel_ * sqr(dot(ray.direction, forward_))};
   }
 
   [[nodiscard]] bool has_lens() const { return lens_radius_ > 0; }
@@ -55,6 +62,7 @@ class Camera {
   Float width_, height_;
   bool is_orthographic_;
   Float lens_radius_, focus_distance_;
+  Float pixel_ = 0;  // perspective: at distance 1
 };
 
 }  // namespace spectrace

@@ -239,7 +239,7 @@ SampledSpectrum Environment::radiance(Vec3 direction, const SampledWavelengths& 
   for (int lane = 0; lane < kLanes; ++lane) {
     const Float nm = lambda.lambda_nm(lane);
     if (spectra_) {
-      const SpectralImage::Place place = spectra_->place(nm);
+      const SpectralPlace place = spectra_->place(nm);
       result[lane] *= bilinear([&](std::size_t t) { return spectra_->at(t, place); });
     } else {
       result[lane] *= bilinear([&](std::size_t t) { return texels_[t].at(nm); }) * white_at(nm);

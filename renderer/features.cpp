@@ -9,18 +9,22 @@ namespace spectrace {
 
 namespace {
 
-bool part_is_textured(const Material& part) {
-  return std::visit(
-      []<typename M>(const M& m) {
-        if constexpr (requires { m.reflectance.is_textured(); }) {
-          return m.reflectance.is_textured();
-        } else if constexpr (requires { m.is_textured(); }) {
-          return m.is_textured();
-        } else {
-          return false;
-        }
-      },
-      part);
+/// Does `holds` of a texture of the material, or of a part of it?
+template <typename Holds>
+bool any_texture(const Material& material, const Holds& holds) {
+  bool any = false;
+  for_each_part(material, [&](const Material& part) {
+    std::visit(
+        [&]<typename M>(const M& m) {
+          if constexpr (requires { m.reflectance.is_textured(); }) {
+            any = any || holds(m.reflectance);
+          } else if constexpr (requires { m.texture(); }) {
+            any = any || holds(m.texture());
+          }
+        },
+        part);
+  });
+  return any;
 }
 
 bool is_dispersive(const Material& material) {
@@ -37,9 +41,11 @@ bool has_specular_parts(const Material& material) {
 }  // namespace
 
 bool is_textured(const Material& material) {
-  bool any = false;
-  for_each_part(material, [&](const Material& part) { any = any || part_is_textured(part); });
-  return any;
+  return any_texture(material, [](const auto& texture) { return texture.is_textured(); });
+}
+
+bool has_images(const Material& material) {
+  return any_texture(material, [](const auto& texture) { return texture.is_image(); });
 }
 
 Features required_features(const Scene& scene, bool layers) {

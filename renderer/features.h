@@ -82,6 +82,8 @@ constexpr LayerSet layer_set(const Features& features) {
 
 /// It, or a part of it, varies over the surface.
 [[nodiscard]] bool is_textured(const Material& material);
+/// Among what varies over the surface is an image: lookups have footprints.
+[[nodiscard]] bool has_images(const Material& material);
 
 /// What this scene calls for. `layers`: the user wants them apart.
 [[nodiscard]] Features required_features(const Scene& scene, bool layers);

@@ -20,15 +20,10 @@ Float largest(const Rgb& rgb) { return static_cast<Float>(std::max({rgb[0], rgb[
 
 Rgb scaled(const Rgb& rgb, double factor) { return {rgb[0] * factor, rgb[1] * factor, rgb[2] * factor}; }
 
-Image rgb_image(const std::filesystem::path& file, Image image) {
-  const std::array<std::string, 3> rgb{"R", "G", "B"};
-  return image.select(rgb, file.string());
-}
-
 /// map_Kd takes the place of Kd: nearly every exporter writes both and means
 /// the image.
 Texture diffuse_texture(const MtlMaterial& mtl) {
-  if (!mtl.diffuse_map.empty()) return image_texture(read_image(mtl.diffuse_map), mtl.diffuse_map.string());
+  if (!mtl.diffuse_map.empty()) return image_texture(mtl.diffuse_map);
   return Spectrum(uplift_reflectance(mtl.diffuse.value_or(Rgb{})));
 }
 
@@ -89,12 +84,6 @@ Kind surface(const MtlMaterial& mtl) {
   return Lambert{diffuse_texture(mtl)};
 }
 
-ScalarTexture opacity_map(const std::filesystem::path& file) {
-  const Image image = read_data_image(file);
-  const std::array<std::string, 1> channel{image.find_channel("A") ? "A" : image.channels.front()};
-  return ScalarTexture(DataBitmap(image.select(channel, file.string())));
-}
-
 }  // namespace
 
 MaterialDesc to_material(const MtlMaterial& mtl) {
@@ -104,12 +93,10 @@ MaterialDesc to_material(const MtlMaterial& mtl) {
     material.kind = std::move(outer);
   };
   if (!mtl.normal_map.empty()) {
-    wrap(NormalMappedDesc{
-        .parts = {},
-        .normals = NormalTexture(DataBitmap(rgb_image(mtl.normal_map, read_data_image(mtl.normal_map))))});
+    wrap(NormalMappedDesc{.parts = {}, .normals = normal_bitmap(mtl.normal_map)});
   }
   if (!mtl.opacity_map.empty()) {
-    wrap(MaskedDesc{.parts = {}, .opacity = opacity_map(mtl.opacity_map)});
+    wrap(MaskedDesc{.parts = {}, .opacity = scalar_bitmap(mtl.opacity_map)});
   } else if (mtl.opacity && *mtl.opacity < 1 && !std::holds_alternative<Dielectric>(material.kind)) {
     wrap(MaskedDesc{.parts = {}, .opacity = static_cast<Float>(*mtl.opacity)});
   }

@@ -13,6 +13,7 @@
 #include "renderer/lobe_shares.h"
 #include "renderer/scene.h"
 #include "renderer/surface.h"
+#include "renderer/uv_footprint.h"
 
 namespace spectrace {
 
@@ -40,7 +41,9 @@ class PathTracer {
   static constexpr int kLayers = int(layer_set(kFeatures));
 
   PathTracer(const Scene& scene, const Sampler& sampler, Float wavelength, const Ray& camera_ray)
-      : scene_(scene), sampler_(sampler), lambda_(scene.wavelengths.sample(wavelength)), ray_(camera_ray) {}
+      : scene_(scene), sampler_(sampler), lambda_(scene.wavelengths.sample(wavelength)), ray_(camera_ray) {
+    if constexpr (kFeatures.textures) cone_ = scene.cone(camera_ray, sampler.sample());
+  }
 
   /// The ray whose hit advance() wants.
   [[nodiscard]] const Ray& ray() const { return ray_; }
@@ -57,6 +60,12 @@ class PathTracer {
     }
     const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray_, *hit);
     add_emission(point, ray_.direction);
+    if constexpr (kFeatures.textures) {
+      if (scene_.has_images) {
+        cone_ = cone_.at(length(point.position - ray_.origin));
+        footprint_ = uv_footprint<kQuery>(scene_.geometry, *hit, point, ray_.direction, cone_);
+      }
+    }
     const bool goes_on = depth_ >= max_depth() ? pass(point) : scatter(point);
     ++vertex_;
     return goes_on;
@@ -156,6 +165,7 @@ class PathTracer {
     Frame frame;
     Vec3 wo;  // local
     const Material& material;
+    ShadingPoint at;
     VertexNumbers numbers;
   };
 
@@ -175,7 +185,8 @@ class PathTracer {
       point.normal_s = normalize(point.normal_s + wo * (side * (wanted - cosine)));
     }
     const Frame frame = frame_along(point.normal_s, point.tangent);
-    return {point, frame, frame.to_local(wo), material, sampler_.vertex(vertex_)};
+    const ShadingPoint at = shading_point(point, footprint_);
+    return {point, frame, frame.to_local(wo), material, at, sampler_.vertex(vertex_)};
   }
 
   /// Light may not pass a surface because its shading normal is bent: both normals must agree on the side.
@@ -201,16 +212,16 @@ class PathTracer {
     if (!light) return;
     const Vec3 wi = vertex.frame.to_local(light->wi);
     if (!sides_agree(vertex, light->wi, wi)) return;
-    const ShadingPoint at = shading_point(vertex.point);
-    const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, at);
+    const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, vertex.at);
     if (bsdf.value_cos.is_zero() || light->radiance.is_zero()) return;
     const Float pdf = light->pdf * choice->probability;
     if (!(pdf > 0)) return;  // a density Float cannot hold: BSDF sampling carries it alone
     const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
     awaited_.radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
     if constexpr (kFeatures.lobe_layers) {
-      awaited_.share =
-          has_share_ ? share_ : lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, at));
+      awaited_.share = has_share_
+                           ? share_
+                           : lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, vertex.at));
     }
     const Ray ray = shadow_ray(ray_origin(vertex.point, light->wi), *light);
     if constexpr (kFeatures.nested) {
@@ -247,8 +258,8 @@ class PathTracer {
     return std::nullopt;
   }
 
-  [[nodiscard]] ShadingPoint shading_point(const SurfacePoint& point) const {
-    return {.lambda = lambda_, .uv = point.uv, .v_sign = point.v_sign};
+  [[nodiscard]] ShadingPoint shading_point(const SurfacePoint& point, const Footprint& footprint) const {
+    return {.lambda = lambda_, .uv = point.uv, .footprint = footprint, .v_sign = point.v_sign};
   }
 
   static Ray shadow_ray(Vec3 origin, const LightSample& light) {
@@ -258,10 +269,13 @@ class PathTracer {
   /// Share of the light that arrives through what lies between.
   [[nodiscard]] Float visibility_through_holes(Ray ray, const LightSample& light) const {
     Float visible = 1;
+    RayCone cone = cone_;
     while (const std::optional<Intersection> hit = scene_.accel.intersect(ray)) {
       const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray, *hit);
+      cone = cone.at(length(point.position - ray.origin));
+      const Footprint footprint = uv_footprint<kQuery>(scene_.geometry, *hit, point, light.wi, cone);
       visible *= pass_through(scene_.materials[point.material], dot(light.wi, point.normal_g) < 0,
-                              shading_point(point));
+                              shading_point(point, footprint));
       if (!(visible > 0)) return 0;
       ray = shadow_ray(ray_origin(point, light.wi), light);
       if (!(dot(ray.direction, light.wi) > 0)) break;  // the offset has carried it past the light
@@ -270,8 +284,7 @@ class PathTracer {
   }
 
   [[nodiscard]] std::optional<BsdfSample> sample_vertex(const Vertex& vertex) const {
-    const BsdfRandom u{vertex.numbers.lobe, vertex.numbers.bsdf};
-    return sample(vertex.material, vertex.wo, u, shading_point(vertex.point));
+    return sample(vertex.material, vertex.wo, {vertex.numbers.lobe, vertex.numbers.bsdf}, vertex.at);
   }
 
   bool go_straight_on(const Vertex& vertex, const BsdfSample& through) {
@@ -311,8 +324,7 @@ class PathTracer {
     if (!sides_agree(vertex, wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
-        share_ = lobe_shares<kParts>(
-            evaluate_lobes(vertex.material, vertex.wo, s->wi, shading_point(vertex.point)));
+        share_ = lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, s->wi, vertex.at));
         has_share_ = true;
       }
     }
@@ -367,6 +379,8 @@ class PathTracer {
   Sampler sampler_;
   SampledWavelengths lambda_;
   Ray ray_;
+  RayCone cone_;         // where ray_ begins; 0 unless some texture is an image
+  Footprint footprint_;  // at the vertex at hand
   std::optional<Ray> shadow_ray_;
   AwaitedLight awaited_;
   bool terminate_next_ = false;  // once the light of this vertex has arrived

@@ -161,6 +161,8 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   shapes.build();
   for (const MaterialDesc& material : shapes.libraries.materials) add_material(material);
   for (Shape& shape : shapes.geometry.shapes) shape.needs_uv = is_textured(materials[shape.material]);
+  const bool images =
+      std::any_of(materials.begin(), materials.end(), [](const Material& m) { return has_images(m); });
   DistantLights distant = build_lights(description, progress);
   Accel accel(shapes.geometry);
   const auto uniform = WavelengthDistribution::uniform(description.range);
@@ -183,6 +185,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
                .seed = description.seed,
                .materials = std::move(materials),
                .last_measured_cosine = std::move(measured_cosines),
+               .has_images = images,
                .has_holes = holes,
                .geometry = std::move(shapes.geometry),
                .lights = std::move(lights),

@@ -30,10 +30,16 @@ struct Scene {
   /// By material: seen from below this cosine a measured BRDF was not measured but extrapolated (hard case
   /// H1); 0 for others, which are never seen from there.
   std::vector<Float> last_measured_cosine;
-  bool has_holes = false;  ///< some material is masked: shadow rays ask what they meet
+  bool has_images = false;  ///< some texture is an image: paths keep their footprints
+  bool has_holes = false;   ///< some material is masked: shadow rays ask what they meet
   Geometry geometry;
   Lights lights;
   Accel accel;
+
+  /// Of sample `sample` of a pixel.
+  [[nodiscard]] RayCone cone(const Ray& camera_ray, std::uint32_t sample) const {
+    return has_images ? camera.cone(camera_ray) * share_of_pixel(sample) : RayCone{};
+  }
 };
 
 /// Loads meshes, images and measured files, drops what cannot be hit (noted by name) and builds the

@@ -46,7 +46,7 @@ std::vector<ChannelGroup> channel_groups(const Image& image, const std::string& 
   std::vector<bool> is_taken(image.channels.size(), false);
   std::vector<ChannelGroup> spectra;
   for (const auto& [name, kind] : kSpectra) {
-    const std::vector<SpectralChannel> found = find_spectral_channels(image, kind, file);
+    const std::vector<SpectralChannel> found = find_spectral_channels(image.channels, kind, file);
     if (found.empty()) continue;
     spectra.push_back(spectrum_group(name, found));
     for (const SpectralChannel& channel : found) is_taken[channel.index] = true;

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
-#include "core/image/bilinear.h"
 #include "core/math/math.h"
 
 namespace spectrace {
@@ -27,67 +26,60 @@ ScalarTexture parse_checkerboard(const JsonValue& json) {
   return board;
 }
 
-/// Nothing where the file cannot be read; that is recorded.
-std::optional<Image> read_for(const JsonValue& json) {
+/// `fallback`, and the problem recorded, where the file cannot be read.
+template <typename T, typename Read>
+T read_for(const JsonValue& json, const T& fallback, const Read& read) {
   const std::filesystem::path file = json.path();
   if (json.is_string() && file.filename().empty()) {
     json.error("expected the name of a file, got an empty string");
-    return std::nullopt;
+    return fallback;
   }
-  if (file.empty()) return std::nullopt;
+  if (file.empty()) return fallback;
   if (std::error_code failed; !std::filesystem::is_regular_file(file, failed)) {
     json.error("there is no file \"" + file.lexically_normal().string() + '"');
-    return std::nullopt;
+    return fallback;
   }
   try {
-    return read_data_image(file);
+    return read(file);
   } catch (const InputError& e) {
     json.error(e.diagnostics().front().text());
-    return std::nullopt;
+    return fallback;
   }
-}
-
-ScalarTexture parse_bitmap(const JsonValue& json) {
-  const std::optional<Image> image = read_for(json);
-  if (!image) return {};
-  const std::array<std::string, 1> channel{image->find_channel("A") ? "A" : image->channels.front()};
-  return ScalarTexture(DataBitmap(image->select(channel, json.string())));
 }
 
 }  // namespace
 
-DataBitmap::DataBitmap(const Image& image)
-    : width_(image.width), height_(image.height), channels_(image.channels.size()) {
-  SPECTRACE_CHECK(width_ > 0 && height_ > 0 && channels_ > 0);
-  std::vector<float> texels = image.data;
-  for (float& x : texels) x = x > 0 ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
-  texels_ = std::make_shared<const std::vector<float>>(std::move(texels));
-}
-
-Float DataBitmap::at(Vec2 uv, std::size_t channel) const {
-  return static_cast<Float>(Bilinear(uv, width_, height_).mean([&](std::size_t row, std::size_t column) {
-    return double((*texels_)[(row * static_cast<std::size_t>(width_) + column) * channels_ + channel]);
-  }));
-}
-
-Float ScalarTexture::at(Vec2 uv) const {
+Float ScalarTexture::at(Vec2 uv, const Footprint& over) const {
   if (const auto* constant = std::get_if<Float>(&v_)) return *constant;
   if (const auto* board = std::get_if<ScalarCheckerboard>(&v_)) {
     const Float cells = std::floor(uv.x * board->repeat.x) + std::floor(uv.y * board->repeat.y);
     return std::fmod(cells, Float(2)) != 0 ? board->odd : board->even;
   }
-  return std::get<DataBitmap>(v_).at(uv, 0);
+  float value = 0;
+  std::get<CachedImage>(v_).mean(uv, over, 0, 1, &value);
+  return Float(value);
 }
 
-DataBitmap NormalTexture::flat() {
-  Image image(1, 1, {"R", "G", "B"});
-  image.data = {0.5F, 0.5F, 1};
-  return DataBitmap(image);
+NormalTexture::NormalTexture(CachedImage bitmap) : bitmap_(std::move(bitmap)) {
+  SPECTRACE_CHECK(bitmap_->channels() == 3);
 }
 
-Vec3 NormalTexture::at(Vec2 uv) const {
-  const Vec3 n{2 * bitmap_.at(uv, 0) - 1, 2 * bitmap_.at(uv, 1) - 1, 2 * bitmap_.at(uv, 2) - 1};
+Vec3 NormalTexture::at(Vec2 uv, const Footprint& over) const {
+  if (!bitmap_) return {0, 0, 1};
+  std::array<float, 3> rgb{};
+  bitmap_->mean(uv, over, 0, 3, rgb.data());
+  const Vec3 n{2 * Float(rgb[0]) - 1, 2 * Float(rgb[1]) - 1, 2 * Float(rgb[2]) - 1};
   return n.z > 0 ? normalize(n) : Vec3{0, 0, 1};
+}
+
+ScalarTexture scalar_bitmap(const std::filesystem::path& file) {
+  const std::vector<std::string> names = texel_channels(file);
+  const bool has_alpha = std::find(names.begin(), names.end(), "A") != names.end();
+  return ScalarTexture(CachedImage(file, {has_alpha ? "A" : names.front()}, TexelCoding::kData));
+}
+
+NormalTexture normal_bitmap(const std::filesystem::path& file) {
+  return NormalTexture(CachedImage(file, {"R", "G", "B"}, TexelCoding::kData));
 }
 
 ScalarTexture parse_scalar_texture(const JsonValue& json) {
@@ -99,19 +91,11 @@ ScalarTexture parse_scalar_texture(const JsonValue& json) {
     json.error("expected a number, \"checkerboard\" or \"bitmap\"");
     return {};
   }
-  return board.exists() ? parse_checkerboard(board) : parse_bitmap(bitmap);
+  return board.exists() ? parse_checkerboard(board) : read_for(bitmap, ScalarTexture(), scalar_bitmap);
 }
 
 NormalTexture parse_normal_texture(const JsonValue& json) {
-  const std::optional<Image> image = read_for(json);
-  if (!image) return {};
-  try {
-    const std::array<std::string, 3> rgb{"R", "G", "B"};
-    return NormalTexture(DataBitmap(image->select(rgb, json.string())));
-  } catch (const InputError& e) {
-    json.error(e.diagnostics().front().text());
-    return {};
-  }
+  return read_for(json, NormalTexture(), normal_bitmap);
 }
 
 }  // namespace spectrace

@@ -4,28 +4,14 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <variant>
-#include <vector>
 
 #include "core/base/json.h"
-#include "core/image/image.h"
+#include "core/image/texture_cache.h"
 #include "core/math/vec.h"
 
 namespace spectrace {
-
-/// Some channels of an image; bilinear, repeating; v = 0 at the bottom row.
-class DataBitmap {
- public:
-  /// Values clamped to [0, 1]; NaN becomes 0.
-  explicit DataBitmap(const Image& image);
-  [[nodiscard]] Float at(Vec2 uv, std::size_t channel) const;
-
- private:
-  int width_ = 0, height_ = 0;
-  std::size_t channels_ = 0;
-  std::shared_ptr<const std::vector<float>> texels_;
-};
 
 /// `even` where floor(u · repeat_u) + floor(v · repeat_v) is even, else `odd`.
 struct ScalarCheckerboard {
@@ -40,28 +26,37 @@ class ScalarTexture {
   ScalarTexture(Float constant) : v_(constant) {}         // NOLINT(google-explicit-constructor)
   ScalarTexture(ScalarCheckerboard board) : v_(board) {}  // NOLINT(google-explicit-constructor)
   /// Its first channel.
-  explicit ScalarTexture(DataBitmap bitmap) : v_(std::move(bitmap)) {}
+  explicit ScalarTexture(CachedImage bitmap) : v_(std::move(bitmap)) {}
 
-  [[nodiscard]] Float at(Vec2 uv) const;
+  /// Images are averaged over the footprint; checkerboards are not.
+  [[nodiscard]] Float at(Vec2 uv, const Footprint& over = kPointFootprint) const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Float>(v_); }
+  /// Its lookups have footprints.
+  [[nodiscard]] bool is_image() const { return std::holds_alternative<CachedImage>(v_); }
 
  private:
-  std::variant<Float, ScalarCheckerboard, DataBitmap> v_{Float(1)};
+  std::variant<Float, ScalarCheckerboard, CachedImage> v_{Float(1)};
 };
 
 /// Unit normals in the frame of the texture: x along u, y along v, z outwards.
 class NormalTexture {
  public:
-  NormalTexture() : NormalTexture(flat()) {}
+  NormalTexture() = default;  // flat
   /// R, G, B: (x, y, z + 1) / 2, the usual encoding.
-  explicit NormalTexture(DataBitmap bitmap) : bitmap_(std::move(bitmap)) {}
-  /// z > 0: a texel that points inwards, or nowhere, is flat.
-  [[nodiscard]] Vec3 at(Vec2 uv) const;
+  explicit NormalTexture(CachedImage bitmap);
+  /// z > 0: where the mean over the footprint points inwards, or nowhere, it is flat.
+  [[nodiscard]] Vec3 at(Vec2 uv, const Footprint& over = kPointFootprint) const;
+  [[nodiscard]] bool is_textured() const { return true; }  // that it is flat is not worth knowing
+  [[nodiscard]] bool is_image() const { return bitmap_.has_value(); }
 
  private:
-  static DataBitmap flat();
-  DataBitmap bitmap_;
+  std::optional<CachedImage> bitmap_;
 };
+
+/// Of a file, its alpha channel where it has one, else its first. Throws InputError.
+ScalarTexture scalar_bitmap(const std::filesystem::path& file);
+/// Of a file, its R, G, B. Throws InputError.
+NormalTexture normal_bitmap(const std::filesystem::path& file);
 
 /// A number, {"checkerboard": {"even": .., "odd": .., "repeat": [u, v]}} or {"bitmap": "file.png"}, of which
 /// the alpha channel is taken where it has one, else the first. Problems are recorded in the document.

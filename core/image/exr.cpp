@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -74,7 +75,9 @@ class MemoryIn final : public Imf::IStream {
 
 /// Attributes announce their size, and the library allocates it before it reads: refuse what the file cannot
 /// hold. Layout: "OpenEXR File Layout", openexr.com, sections "Header" and "Attribute Layout".
-void check_attribute_sizes(std::span<const std::byte> bytes, const std::string& file) {
+/// `bytes` may be the beginning of a file of `file_size`.
+void check_attribute_sizes(std::span<const std::byte> bytes, std::uint64_t file_size,
+                           const std::string& file) {
   constexpr std::size_t kMagicAndVersion = 8;
   std::size_t at = kMagicAndVersion;
   const auto text_end = [&](std::size_t from) {
@@ -91,10 +94,10 @@ void check_attribute_sizes(std::span<const std::byte> bytes, const std::string& 
     std::uint32_t size = 0;
     std::memcpy(&size, bytes.data() + type_end + 1, sizeof size);
     const std::size_t value = type_end + 1 + sizeof size;
-    if (size > bytes.size() - value) {
+    if (size > file_size - value) {
       throw InputError(
           file, fmt::format("byte {}", type_end + 1),
-          fmt::format("EXR attribute announces {} bytes, the file has {} left", size, bytes.size() - value));
+          fmt::format("EXR attribute announces {} bytes, the file has {} left", size, file_size - value));
     }
     at = value + size;
   }
@@ -145,7 +148,7 @@ std::pair<int, int> checked_size(const Imf::Header& header, std::size_t file_byt
 /// Runs `decode` on the opened file; whatever the library throws about it is bad input.
 template <typename Decode>
 auto with_exr(std::span<const std::byte> bytes, const std::string& file, Decode decode) {
-  check_attribute_sizes(bytes, file);
+  check_attribute_sizes(bytes, bytes.size(), file);
   try {
     MemoryIn stream(bytes);
     Imf::InputFile in(stream);
@@ -209,6 +212,19 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
 bool is_exr(std::span<const std::byte> bytes) {
   constexpr std::array kMagic{std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+}
+
+void check_exr_header(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxHeader = std::size_t(1) << 24;
+  std::error_code failed;
+  const std::uint64_t size = std::filesystem::file_size(file, failed);
+  if (failed) throw InputError(file.string(), "", fmt::format("cannot be read: {}", failed.message()));
+  std::vector<std::byte> head(std::size_t(std::min<std::uint64_t>(size, kMaxHeader)));
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(reinterpret_cast<char*>(head.data()), std::streamsize(head.size()))) {
+    throw InputError(file.string(), "", "cannot be read");
+  }
+  if (is_exr(head)) check_attribute_sizes(head, size, file.string());
 }
 
 Image decode_exr(std::span<const std::byte> bytes, const std::string& file, std::size_t max_pixels) {

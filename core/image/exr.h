@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -15,5 +16,8 @@ namespace spectrace {
 [[nodiscard]] Image decode_exr(std::span<const std::byte> bytes, const std::string& file,
                                std::size_t max_pixels);
 [[nodiscard]] Metadata decode_exr_metadata(std::span<const std::byte> bytes, const std::string& file);
+/// Refuses an EXR file whose header announces more than the file can hold, before a library believes it;
+/// other files pass.
+void check_exr_header(const std::filesystem::path& file);
 
 }  // namespace spectrace

@@ -65,8 +65,6 @@ std::string jpeg_data_uri(const Image& image, std::string_view layer = "", doubl
 /// R, G, B. Channels come layer by layer, within each R, G, B, A or X, Y, Z, then by name. Throws InputError
 /// where the file is damaged, not an image, or has more than `max_pixels`; the memory used before is bounded.
 Image read_image(const std::filesystem::path& file, std::size_t max_pixels = std::size_t(1) << 28);
-/// The same of an image that holds numbers, not colours (normals, masks): integers become [0, 1] as stored.
-Image read_data_image(const std::filesystem::path& file, std::size_t max_pixels = std::size_t(1) << 28);
 /// Header attributes that are texts or numbers; without those that describe the pixels' layout.
 Metadata read_metadata(const std::filesystem::path& file);
 

@@ -82,9 +82,9 @@ std::vector<unsigned char> encode_8bit(const Image& rgb, double exposure) {
   return pixels;
 }
 
-enum class Integers { kSrgb, kAsStored };
+}  // namespace
 
-Image read_pixels(const std::filesystem::path& file, std::size_t max_pixels, Integers integers) {
+Image read_image(const std::filesystem::path& file, std::size_t max_pixels) {
   const std::string name = file.string();
   {
     const std::vector<std::byte> bytes = read_file(file);
@@ -98,20 +98,9 @@ Image read_pixels(const std::filesystem::path& file, std::size_t max_pixels, Int
     throw InputError(name, "", fmt::format("damaged image: {}", in->geterror()));
   }
   const bool is_integer = !spec.format.is_floating_point();
-  if (is_integer && integers == Integers::kSrgb &&
-      !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear"))
+  if (is_integer && !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear"))
     decode_srgb(image, spec.alpha_channel);
   return with_rgb(std::move(image));
-}
-
-}  // namespace
-
-Image read_image(const std::filesystem::path& file, std::size_t max_pixels) {
-  return read_pixels(file, max_pixels, Integers::kSrgb);
-}
-
-Image read_data_image(const std::filesystem::path& file, std::size_t max_pixels) {
-  return read_pixels(file, max_pixels, Integers::kAsStored);
 }
 
 Metadata read_metadata(const std::filesystem::path& file) {

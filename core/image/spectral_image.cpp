@@ -51,11 +51,11 @@ SpectralImage::SpectralImage(int width, int height, std::vector<Float> lambda_nm
   SPECTRACE_CHECK(values_.size() == std::size_t(width_) * std::size_t(height_) * lambda_nm_.size());
 }
 
-SpectralImage::Place SpectralImage::place(Float nm) const {
-  if (!(nm > lambda_nm_.front())) return {0, 0};
-  const auto above = std::lower_bound(lambda_nm_.begin() + 1, lambda_nm_.end() - 1, nm);
-  const auto node = std::size_t(above - lambda_nm_.begin()) - 1;
-  return {node, std::min((nm - lambda_nm_[node]) / (lambda_nm_[node + 1] - lambda_nm_[node]), Float(1))};
+SpectralPlace spectral_place(std::span<const Float> lambda_nm, Float at_nm) {
+  if (!(at_nm > lambda_nm.front())) return {0, 0};
+  const auto above = std::lower_bound(lambda_nm.begin() + 1, lambda_nm.end() - 1, at_nm);
+  const auto node = std::size_t(above - lambda_nm.begin()) - 1;
+  return {node, std::min((at_nm - lambda_nm[node]) / (lambda_nm[node + 1] - lambda_nm[node]), Float(1))};
 }
 
 TabulatedSpectrum SpectralImage::spectrum(std::size_t texel) const {
@@ -63,12 +63,21 @@ TabulatedSpectrum SpectralImage::spectrum(std::size_t texel) const {
   return {lambda_nm_, {begin, begin + std::ptrdiff_t(lambda_nm_.size())}};
 }
 
-std::vector<SpectralChannel> find_spectral_channels(const Image& image, SpectralKind kind,
+bool has_spectral_channels(std::span<const std::string> channels, SpectralKind kind) {
+  return std::any_of(channels.begin(), channels.end(),
+                     [&](const std::string& name) { return is_spectral(name, prefix_of(kind)); });
+}
+
+bool has_spectral_channels(const Image& image, SpectralKind kind) {
+  return has_spectral_channels(image.channels, kind);
+}
+
+std::vector<SpectralChannel> find_spectral_channels(std::span<const std::string> channels, SpectralKind kind,
                                                     const std::string& file) {
   const std::string_view prefix = prefix_of(kind);
   std::vector<SpectralChannel> found;
-  for (std::size_t i = 0; i < image.channels.size(); ++i) {
-    const std::string& name = image.channels[i];
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const std::string& name = channels[i];
     if (!is_spectral(name, prefix)) continue;
     const std::optional<double> lambda_nm = parse_wavelength(std::string_view(name).substr(prefix.size()));
     if (!lambda_nm) {
@@ -99,14 +108,9 @@ std::vector<SpectralChannel> find_spectral_channels(const Image& image, Spectral
   return found;
 }
 
-bool has_spectral_channels(const Image& image, SpectralKind kind) {
-  return std::any_of(image.channels.begin(), image.channels.end(),
-                     [&](const std::string& name) { return is_spectral(name, prefix_of(kind)); });
-}
-
 std::optional<SpectralImage> spectral_channels(const Image& image, SpectralKind kind,
                                                const std::string& file) {
-  const std::vector<SpectralChannel> found = find_spectral_channels(image, kind, file);
+  const std::vector<SpectralChannel> found = find_spectral_channels(image.channels, kind, file);
   if (found.empty()) return std::nullopt;
   std::vector<Float> lambda_nm;
   for (const SpectralChannel& channel : found) lambda_nm.push_back(static_cast<Float>(channel.lambda_nm));

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,20 +17,22 @@ namespace spectrace {
 
 enum class SpectralKind : std::uint8_t { kReflectance, kRadiance };
 
-/// Linear between its wavelengths; outside them the end values hold, as with any table.
+/// Where a wavelength lies between those of a table: linear between them, outside the end values hold.
+struct SpectralPlace {
+  std::size_t node = 0;  // this one and the next
+  Float weight = 0;      // of the next
+};
+/// `lambda_nm`: strictly increasing, at least two.
+[[nodiscard]] SpectralPlace spectral_place(std::span<const Float> lambda_nm, Float at_nm);
+
 class SpectralImage {
  public:
   /// `values`: [height][width][wavelength]; `lambda_nm` strictly increasing, at least two: checked.
   SpectralImage(int width, int height, std::vector<Float> lambda_nm, std::vector<float> values);
 
-  /// Where a wavelength lies between the image's own.
-  struct Place {
-    std::size_t node = 0;  // this one and the next
-    Float weight = 0;      // of the next
-  };
-  [[nodiscard]] Place place(Float lambda_nm) const;
+  [[nodiscard]] SpectralPlace place(Float at_nm) const { return spectral_place(lambda_nm_, at_nm); }
   /// `texel`: row · width + column.
-  [[nodiscard]] Float at(std::size_t texel, Place place) const {
+  [[nodiscard]] Float at(std::size_t texel, SpectralPlace place) const {
     const float* values = &values_[texel * lambda_nm_.size() + place.node];
     return Float(values[0]) + place.weight * (Float(values[1]) - Float(values[0]));
   }
@@ -38,7 +41,6 @@ class SpectralImage {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] const std::vector<Float>& lambda_nm() const { return lambda_nm_; }
-  [[nodiscard]] std::vector<float>& values() { return values_; }
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
 
  private:
@@ -47,16 +49,18 @@ class SpectralImage {
   std::vector<float> values_;
 };
 
+[[nodiscard]] bool has_spectral_channels(std::span<const std::string> channels, SpectralKind kind);
+[[nodiscard]] bool has_spectral_channels(const Image& image, SpectralKind kind);
+
 struct SpectralChannel {
   double lambda_nm = 0;
-  std::size_t index = 0;  ///< in Image::channels
+  std::size_t index = 0;  ///< among all channels
   std::string name;
 };
-/// The channels of one kind, by wavelength: none, or at least two. Throws InputError naming `file` and the
-/// channel where a name or a wavelength is wrong.
-[[nodiscard]] std::vector<SpectralChannel> find_spectral_channels(const Image& image, SpectralKind kind,
-                                                                  const std::string& file);
-[[nodiscard]] bool has_spectral_channels(const Image& image, SpectralKind kind);
+/// Those of one kind, by wavelength: none, or at least two. Throws InputError naming `file` and the channel
+/// where a name or a wavelength is wrong.
+[[nodiscard]] std::vector<SpectralChannel> find_spectral_channels(std::span<const std::string> channels,
+                                                                  SpectralKind kind, const std::string& file);
 /// The same with their values; nothing where the image has none.
 [[nodiscard]] std::optional<SpectralImage> spectral_channels(const Image& image, SpectralKind kind,
                                                              const std::string& file);

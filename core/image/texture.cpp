@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/image/bilinear.h"
 #include "core/image/spectral_image.h"
 #include "core/spectra/rgb_uplift.h"
 
@@ -39,7 +38,7 @@ Texture parse_bitmap(const JsonValue& json, const Spectrum& fallback) {
   const std::filesystem::path file = json.path();
   if (file.empty()) return fallback;
   try {
-    return image_texture(read_image(file), file.string());
+    return image_texture(file);
   } catch (const InputError& e) {
     json.error(e.diagnostics().front().text());
     return fallback;
@@ -48,60 +47,79 @@ Texture parse_bitmap(const JsonValue& json, const Spectrum& fallback) {
 
 }  // namespace
 
-BitmapTexture::BitmapTexture(const Image& rgb) : width_(rgb.width), height_(rgb.height) {
-  SPECTRACE_CHECK(width_ > 0 && height_ > 0 && rgb.channels.size() == 3);
-  std::vector<float> texels = rgb.data;
-  for (float& x : texels) x = x > 0 ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
-  rgb_ = std::make_shared<const std::vector<float>>(std::move(texels));
+BitmapTexture::BitmapTexture(CachedImage rgb) : rgb_(std::move(rgb)) {
+  SPECTRACE_CHECK(rgb_.channels() == 3);
 }
 
-Rgb BitmapTexture::rgb_at(Vec2 uv) const {
-  const Bilinear texels(uv, width_, height_);
-  Rgb rgb{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    rgb[c] = texels.mean([&](std::size_t row, std::size_t column) {
-      return double((*rgb_)[(row * static_cast<std::size_t>(width_) + column) * 3 + c]);
-    });
-  }
-  return rgb;
+Rgb BitmapTexture::rgb_at(Vec2 uv, const Footprint& over) const {
+  std::array<float, 3> rgb{};
+  rgb_.mean(uv, over, 0, 3, rgb.data());
+  return {double(rgb[0]), double(rgb[1]), double(rgb[2])};
 }
 
-SpectralTexture::SpectralTexture(SpectralImage image) {
-  for (float& x : image.values()) x = x > 0 ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
-  image_ = std::make_shared<const SpectralImage>(std::move(image));
+SpectralTexture::SpectralTexture(CachedImage image, std::vector<Float> lambda_nm)
+    : image_(std::move(image)), lambda_nm_(std::make_shared<const std::vector<Float>>(std::move(lambda_nm))) {
+  SPECTRACE_CHECK(lambda_nm_->size() >= 2 && lambda_nm_->size() == image_.channels());
 }
 
-SampledSpectrum SpectralTexture::sample(const SampledWavelengths& lambda, Vec2 uv) const {
-  const Bilinear texels(uv, image_->width(), image_->height());
-  const auto width = static_cast<std::size_t>(image_->width());
-  SampledSpectrum r;
+SampledSpectrum SpectralTexture::sample(const SampledWavelengths& lambda, Vec2 uv,
+                                        const Footprint& over) const {
+  std::array<SpectralPlace, kLanes> places;
+  std::size_t first = lambda_nm_->size(), last = 0;  // of the channels that take part
   for (int i = 0; i < kLanes; ++i) {
-    const SpectralImage::Place place = image_->place(lambda.lambda_nm(i));
-    r[i] = static_cast<Float>(texels.mean([&](std::size_t row, std::size_t column) {
-      return double(image_->at(row * width + column, place));
-    }));
+    const SpectralPlace place = spectral_place(*lambda_nm_, lambda.lambda_nm(i));
+    places[std::size_t(i)] = place;
+    first = std::min(first, place.node);
+    last = std::max(last, place.node + 2);
+  }
+  SampledSpectrum r;
+  const auto take = [&](int lane, const float* values) {
+    const Float below = values[0], above = values[1];
+    r[lane] = below + places[std::size_t(lane)].weight * (above - below);
+  };
+  // The cache filters four channels at a time: as much work as two for each lane apart.
+  constexpr std::size_t kAtOnce = 4 * std::size_t(kLanes);
+  if (last - first <= kAtOnce) {
+    std::array<float, kAtOnce> values{};
+    image_.mean(uv, over, first, last - first, values.data());
+    for (int i = 0; i < kLanes; ++i) take(i, &values[places[std::size_t(i)].node - first]);
+  } else {
+    for (int i = 0; i < kLanes; ++i) {
+      std::array<float, 2> values{};
+      image_.mean(uv, over, places[std::size_t(i)].node, 2, values.data());
+      take(i, values.data());
+    }
   }
   return r;
 }
 
-SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv) const {
+SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv, const Footprint& over) const {
   if (const auto* spectrum = std::get_if<Spectrum>(&v_)) return spectrum->sample(lambda);
   if (const auto* board = std::get_if<Checkerboard>(&v_)) {
     return (is_odd(*board, uv) ? board->odd : board->even).sample(lambda);
   }
-  if (const auto* spectra = std::get_if<SpectralTexture>(&v_)) return spectra->sample(lambda, uv);
-  return uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv)).sample(lambda);
+  if (const auto* spectra = std::get_if<SpectralTexture>(&v_)) return spectra->sample(lambda, uv, over);
+  return uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv, over)).sample(lambda);
 }
 
-Texture image_texture(const Image& image, const std::string& file) {
-  if (std::optional<SpectralImage> spectra = spectral_channels(image, SpectralKind::kReflectance, file)) {
-    return SpectralTexture(std::move(*spectra));
+Texture image_texture(const std::filesystem::path& file) {
+  const std::vector<std::string> names = texel_channels(file);
+  if (const auto spectra = find_spectral_channels(names, SpectralKind::kReflectance, file.string());
+      !spectra.empty()) {
+    std::vector<std::string> channels;
+    std::vector<Float> lambda_nm;
+    for (const SpectralChannel& channel : spectra) {
+      channels.push_back(channel.name);
+      lambda_nm.push_back(Float(channel.lambda_nm));
+    }
+    return SpectralTexture(CachedImage(file, channels, TexelCoding::kColour), std::move(lambda_nm));
   }
-  const std::array<std::string, 3> rgb{"R", "G", "B"};
-  if (!image.find_channel("R") && has_spectral_channels(image, SpectralKind::kRadiance)) {
-    throw InputError(file, "", "holds radiance (channels \"S0.\"), a texture needs reflectance (\"T.\")");
+  const bool is_rgb = std::find(names.begin(), names.end(), "R") != names.end();
+  if (!is_rgb && has_spectral_channels(names, SpectralKind::kRadiance)) {
+    throw InputError(file.string(), "",
+                     "holds radiance (channels \"S0.\"), a texture needs reflectance (\"T.\")");
   }
-  return BitmapTexture(image.select(rgb, file));
+  return BitmapTexture(CachedImage(file, {"R", "G", "B"}, TexelCoding::kColour));
 }
 
 Texture parse_texture(const JsonValue& json, const Spectrum& fallback) {

@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include "core/base/json.h"
 #include "core/image/image.h"
+#include "core/image/texture_cache.h"
 #include "core/math/vec.h"
 #include "core/spectra/spectrum.h"
 
@@ -20,29 +22,30 @@ struct Checkerboard {
   Float repeat_u = 1, repeat_v = 1;
 };
 
-/// Texels kept as sigmoid coefficients' source RGB; bilinear, repeating; v = 0 at the bottom row.
+/// Linear RGB, uplifted after it has been filtered; repeating; v = 0 at the bottom row.
 class BitmapTexture {
  public:
-  /// Linear RGB image; values clamped to [0, 1].
-  explicit BitmapTexture(const Image& rgb);
-  [[nodiscard]] Rgb rgb_at(Vec2 uv) const;
+  /// R, G, B; values clamped to [0, 1]; NaN becomes 0.
+  explicit BitmapTexture(CachedImage rgb);
+  explicit BitmapTexture(const Image& rgb) : BitmapTexture(CachedImage(rgb)) {}
+  [[nodiscard]] Rgb rgb_at(Vec2 uv, const Footprint& over = kPointFootprint) const;
 
  private:
-  int width_ = 0, height_ = 0;
-  std::shared_ptr<const std::vector<float>> rgb_;
+  CachedImage rgb_;
 };
 
-class SpectralImage;
-
-/// A spectrum a texel, read at a path's wavelengths; bilinear, repeating; v = 0 at the bottom row.
+/// A spectrum a texel, read at a path's wavelengths; repeating; v = 0 at the bottom row.
 class SpectralTexture {
  public:
-  /// Values clamped to [0, 1]; NaN becomes 0.
-  explicit SpectralTexture(SpectralImage image);
-  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv) const;
+  /// `lambda_nm`: of each channel, strictly increasing, at least two. Values clamped to [0, 1]; NaN becomes
+  /// 0.
+  SpectralTexture(CachedImage image, std::vector<Float> lambda_nm);
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv,
+                                       const Footprint& over = kPointFootprint) const;
 
  private:
-  std::shared_ptr<const SpectralImage> image_;
+  CachedImage image_;
+  std::shared_ptr<const std::vector<Float>> lambda_nm_;
 };
 
 class Texture {
@@ -53,16 +56,22 @@ class Texture {
   Texture(BitmapTexture b) : v_(std::move(b)) {}    // NOLINT(google-explicit-constructor)
   Texture(SpectralTexture s) : v_(std::move(s)) {}  // NOLINT(google-explicit-constructor)
 
-  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv) const;
+  /// Images are averaged over the footprint; checkerboards are not.
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv,
+                                       const Footprint& over = kPointFootprint) const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Spectrum>(v_); }
+  /// Its lookups have footprints.
+  [[nodiscard]] bool is_image() const {
+    return std::holds_alternative<BitmapTexture>(v_) || std::holds_alternative<SpectralTexture>(v_);
+  }
 
  private:
   std::variant<Spectrum, Checkerboard, BitmapTexture, SpectralTexture> v_;
 };
 
-/// An image's spectra of reflectance (channels "T.550,000000nm", ...) where it has them, else its R, G, B.
-/// Throws InputError naming `file` where it has neither.
-Texture image_texture(const Image& image, const std::string& file);
+/// A file's spectra of reflectance (channels "T.550,000000nm", ...) where it has them, else its R, G, B.
+/// Throws InputError where it has neither or cannot be read.
+Texture image_texture(const std::filesystem::path& file);
 
 /// A spectrum (parse_spectrum, kReflectance), {"checkerboard": {"even": .., "odd": .., "repeat": [u, v]}} or
 /// {"bitmap": "file.png"}. Problems are recorded in the document.

@@ -42,6 +42,9 @@ class Sampler {
   /// `vertex` = 0 for the first surface hit.
   [[nodiscard]] VertexNumbers vertex(std::uint32_t vertex) const;
 
+  /// Which of the pixel's samples, but for the blocks of 2^32.
+  [[nodiscard]] std::uint32_t sample() const { return sample_; }
+
   /// Numbers come in blocks of as many as a register of 256 bits holds.
   static constexpr int kBlock = 8;
 

@@ -139,7 +139,7 @@ SceneDesc bent_quad() {
   image.data = {0.8F, 0.56F, 0.5F + 0.5F * 0.79F};  // (0.6, 0.12, 0.79)
   SceneDesc scene = empty_scene();
   scene.materials = {made_of("bumps", NormalMappedDesc{.parts = {lambert("", Float(0.5))},
-                                                       .normals = NormalTexture(DataBitmap(image))})};
+                                                       .normals = NormalTexture(CachedImage(image))})};
   scene.shapes = {quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, "bumps")};
   return scene;
 }

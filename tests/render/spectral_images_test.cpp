@@ -89,8 +89,7 @@ TEST(SpectralImages, TexturesReflectTheirSpectra) {
   scene.shapes = {quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, "floor")};
   scene.lights = {sky(2)};
   look_at_point(scene, {4, 0, 2}, {Float(0.3), 0, 0});
-  scene.materials = {
-      {.name = "floor", .where = "", .kind = Lambert{image_texture(read_image(folder / "t.exr"), "t.exr")}}};
+  scene.materials = {{.name = "floor", .where = "", .kind = Lambert{image_texture(folder / "t.exr")}}};
   const Spectrum reflectance = TabulatedSpectrum(kNm, kValues);
   expect_xyz(render_scene(scene, 1024).image, "diffuse", spectrum_to_xyz(reflectance.scaled(2)));
 }

@@ -211,7 +211,7 @@ void add_rough_glass(std::vector<BsdfCase>& cases) {
 NormalTexture tilted_normals() {
   Image image(1, 1, {"R", "G", "B"});
   image.data = {0.62F, 0.44F, 0.97F};
-  return NormalTexture(DataBitmap(image));
+  return NormalTexture(CachedImage(image));
 }
 
 /// Materials made of others. `interior_eta` of the glass among them.

@@ -112,7 +112,14 @@ MaterialDesc made_of(const std::string& name, decltype(MaterialDesc::kind) kind)
 NormalTexture bumps() {
   Image image(2, 2, {"R", "G", "B"});
   image.data = {0.6F, 0.5F, 0.9F, 0.5F, 0.7F, 0.9F, 0.4F, 0.5F, 0.9F, 0.5F, 0.3F, 0.9F};
-  return NormalTexture(DataBitmap(image));
+  return NormalTexture(CachedImage(image));
+}
+
+/// Finer than pixels see it, on all that can be hit.
+Texture fine_image() {
+  Image image(300, 200, {"R", "G", "B"});
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(i * 7919 % 100) / 100;
+  return BitmapTexture(image);
 }
 
 SceneDesc nested_scene() {
@@ -204,6 +211,11 @@ std::vector<NamedScene> scene_zoo() {
   zoo.back().scene.shapes[1] = moved(disk({0, 0, 0}, {0, -1, 1}, 1, "ball"),
                                      translation({0, 0, 1}).compose(scaling({Float(1.5), 1, 1})));
   zoo.back().scene.shapes.push_back(emitting(disk({-1, -1, 4}, {1, 1, -4}, 1, "black"), 6));
+  zoo.push_back({"image on a glossy ball and its floor",
+                 ball_scene(glossy("ball", fine_image()),
+                            {.name = "floor", .where = "", .kind = Lambert{fine_image()}})});
+  zoo.back().scene.shapes.push_back(lamp());
+  zoo.back().scene.lights = {sky(Float(0.3))};
   zoo.push_back({"many lights", ball_scene(lambert("ball", Float(0.5)), lambert("floor", Float(0.5)))});
   add_many_lights(zoo.back().scene);
   zoo.push_back(

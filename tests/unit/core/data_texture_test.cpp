@@ -80,7 +80,7 @@ TEST_F(DataTextureFile, NormalsAreDecoded) {
 TEST(DataTexture, RowsRunFromTheTopAndTexelsBlend) {
   Image image(1, 2, {"R"});
   image.data = {1, 0};
-  const ScalarTexture texture{DataBitmap(image)};
+  const ScalarTexture texture{CachedImage(image)};
   EXPECT_EQ(texture.at({0, Float(0.75)}), 1);
   EXPECT_EQ(texture.at({0, Float(0.25)}), 0);
   EXPECT_EQ(texture.at({0, Float(0.5)}), Float(0.5));

@@ -32,7 +32,7 @@ Material brushed() {
 NormalTexture uniform_normal(Vec3 n) {
   Image image(1, 1, {"R", "G", "B"});
   image.data = {float(n.x + 1) / 2, float(n.y + 1) / 2, float(n.z + 1) / 2};
-  return NormalTexture(DataBitmap(image));
+  return NormalTexture(CachedImage(image));
 }
 
 TEST(Nested, TwoSidesAreTwoMaterials) {
