@@ -205,8 +205,8 @@ void add_render(CLI::App& app, Action& chosen) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--texture-cache", arguments->texture_cache,
-                 "mebibytes of texture tiles kept in memory; changes no bit of the image")
-      ->check(CLI::Range(10, 1 << 24))
+                 "mebibytes of textures kept in memory; changes no bit of the image")
+      ->check(CLI::Range(20, 1 << 24))
       ->capture_default_str();
   app.add_flag("--layer-pngs", arguments->layer_pngs, "also write -diffuse.png and -specular.png");
   app.add_flag("--beauty-only", arguments->beauty_only,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "core/image/exr.h"
 #include "core/image/kept_levels.h"
 #include "core/image/texels.h"
+#include "core/image/texture_cache.h"
 #include "core/spectra/color.h"
 
 namespace spectrace {
@@ -220,6 +222,35 @@ std::vector<TexelLevel> own_levels(OIIO::ImageInput& in) {
   return levels.size() > 1 ? levels : std::vector<TexelLevel>{};
 }
 
+/// Of the memory for whole images, what one of them takes.
+class Share {
+ public:
+  Share() = default;
+  ~Share() { taken() -= bytes_; }
+  Share(const Share&) = delete;
+  Share& operator=(const Share&) = delete;
+  /// False where there is not as much left.
+  bool take(std::size_t bytes) {
+    if ((taken() += bytes) > limit()) {
+      taken() -= bytes;
+      return false;
+    }
+    bytes_ += bytes;
+    return true;
+  }
+  static std::atomic<std::size_t>& limit() {
+    static std::atomic<std::size_t> bytes{(kTextureCacheMiB << 20) / 2};
+    return bytes;
+  }
+
+ private:
+  static std::atomic<std::size_t>& taken() {
+    static std::atomic<std::size_t> bytes{0};
+    return bytes;
+  }
+  std::size_t bytes_ = 0;
+};
+
 class FileSource final : public TexelSource {
  public:
   FileSource(const std::filesystem::path& file, const std::vector<std::string>& channels,
@@ -249,16 +280,37 @@ class FileSource final : public TexelSource {
     const auto first = std::size_t(std::find_if(levels_.begin(), levels_.end(), fits) - levels_.begin());
     SPECTRACE_CHECK(first < levels_.size());
     FileReader reader(selection_, levels_, nullptr);
-    std::vector<float> finest =
-        first == 0 ? reader.rows(0, 0, levels_[0].height) : reader.means(first, 0, levels_[first].height);
-    kept_.emplace(levels_, first, channels_, std::move(finest));
+    using Levels = std::vector<std::vector<float>>;
+    if (first > 0 && !share_.take(bytes_of_all())) {
+      kept_.emplace(levels_, first, channels_, Levels{reader.means(first, 0, levels_[first].height)});
+      return;
+    }
+    // The same numbers as made from the file: levels up to `first` are means of the finest.
+    Levels finest{reader.rows(0, 0, levels_[0].height)};
+    const auto row_size = std::size_t(levels_[0].width) * channels_;
+    for (std::size_t i = 1; i <= first; ++i) {
+      AreaMeans means({levels_[0].width, levels_[0].height}, {levels_[i].width, levels_[i].height}, 0,
+                      levels_[i].height, channels_);
+      for (int y = 0; y < levels_[0].height; ++y) means.add(y, &finest[0][std::size_t(y) * row_size]);
+      finest.push_back(means.means());
+    }
+    kept_.emplace(levels_, 0, channels_, std::move(finest));
+  }
+
+  [[nodiscard]] std::size_t bytes_of_all() const {
+    std::size_t texels = 0;
+    for (const TexelLevel& level : levels_) texels += std::size_t(level.width) * std::size_t(level.height);
+    return texels * channels_ * sizeof(float);
   }
 
   Selection selection_;
+  Share share_;
   std::optional<KeptLevels> kept_;
 };
 
 }  // namespace
+
+void set_kept_limit(std::size_t bytes) { Share::limit() = bytes; }
 
 std::vector<std::string> texel_channels(const std::filesystem::path& file) {
   return names_of(*open_texture(file));

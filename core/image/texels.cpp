@@ -20,10 +20,9 @@ std::vector<TexelLevel> halved_levels(int width, int height) {
 }
 
 KeptLevels::KeptLevels(const std::vector<TexelLevel>& levels, std::size_t first, std::size_t channels,
-                       std::vector<float> finest)
-    : first_(first) {
-  texels_.push_back(std::move(finest));
-  for (std::size_t i = first + 1; i < levels.size(); ++i) {
+                       std::vector<std::vector<float>> finest)
+    : first_(first), texels_(std::move(finest)) {
+  for (std::size_t i = first + texels_.size(); i < levels.size(); ++i) {
     const TexelLevel &fine = levels[i - 1], &coarse = levels[i];
     AreaMeans means({fine.width, fine.height}, {coarse.width, coarse.height}, 0, coarse.height, channels);
     for (int y = 0; y < fine.height; ++y) {
@@ -68,7 +67,7 @@ class MemorySource final : public TexelSource {
     levels_ = halved_levels(image.width, image.height);
     std::vector<float> finest = image.data;
     std::transform(finest.begin(), finest.end(), finest.begin(), usable_texel);
-    texels_.emplace(levels_, 0, channels_, std::move(finest));
+    texels_.emplace(levels_, 0, channels_, std::vector<std::vector<float>>{std::move(finest)});
   }
   [[nodiscard]] std::unique_ptr<TexelReader> open() const override {
     return std::make_unique<MemoryReader>(*texels_, levels_, channels_);

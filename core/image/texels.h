@@ -54,9 +54,10 @@ class TexelSource {
 
 /// The names of the channels of a file, as read_image() gives them, from its header. Throws InputError.
 [[nodiscard]] std::vector<std::string> texel_channels(const std::filesystem::path& file);
-/// Some channels of a file, in that order. A file without levels of its own is read once, strip by strip:
-/// what is damaged throws InputError here. Coarse levels are kept in memory, at most kKeptTexels numbers the
-/// finest of them; finer ones are made again from the file each time they are asked for.
+/// Some channels of a file, in that order. A file without levels of its own is read once: what is damaged
+/// throws InputError here. It is kept whole in memory if it fits (kept_levels.h), else its levels of at most
+/// kKeptTexels numbers, and the finer ones are made again from the file, strip by strip, each time they are
+/// asked for. The numbers are the same.
 [[nodiscard]] std::unique_ptr<TexelSource> texels_of_file(const std::filesystem::path& file,
                                                           const std::vector<std::string>& channels,
                                                           TexelCoding coding);

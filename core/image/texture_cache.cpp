@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/image/kept_levels.h"
 
 namespace spectrace {
 
@@ -120,7 +121,7 @@ class SourceInput final : public OIIO::ImageInput {
 OIIO::TextureSystem& textures() {
   static OIIO::TextureSystem* const system = [] {
     OIIO::TextureSystem* s = OIIO::TextureSystem::create(false);  // never destroyed: threads hold parts of it
-    s->attribute("max_memory_MB", float(kTextureCacheMiB));
+    s->attribute("max_memory_MB", float(kTextureCacheMiB) / 2);
     s->attribute("autotile", kTile);
     s->attribute("deduplicate", 0);
     s->attribute("max_tile_channels", 1 << 16);  // a spectrum's channels share a tile
@@ -164,7 +165,9 @@ struct CachedImage::Entry {
 };
 
 void set_texture_cache_limit(std::size_t mebibytes) {
-  textures().attribute("max_memory_MB", float(mebibytes));
+  // Half for tiles, half for whole images of files that cannot be read from the middle at no cost.
+  textures().attribute("max_memory_MB", float(mebibytes) / 2);
+  set_kept_limit((mebibytes << 20) / 2);
 }
 
 std::size_t texture_cache_bytes() {

@@ -17,7 +17,8 @@
 namespace spectrace {
 
 inline constexpr std::size_t kTextureCacheMiB = 1024;  ///< until it is set
-/// Of the whole process; takes effect as tiles are read. Changes no lookup.
+/// Of the whole process, from what is loaded next on: half for tiles, half for whole images. No lookup
+/// changes.
 void set_texture_cache_limit(std::size_t mebibytes);
 /// What the tiles in the cache take.
 [[nodiscard]] std::size_t texture_cache_bytes();
