@@ -127,7 +127,7 @@ TEST(Textures, FlatMirrorsShowThemAsSharpAsTheyAre) {
   mirrored.shapes.push_back(quad({-10, 22, 5}, {0, 20, 0}, {20, 0, 0}, "mirror"));
   const double a = relative_variance(direct), b = relative_variance(mirrored);
   EXPECT_GT(b, a / Float(1.5));
-  EXPECT_LT(b, a * Float(1.5)) << "a cone that began anew at the mirror would show three times the contrast";
+  EXPECT_LT(b, a * Float(1.5)) << "a cone that began anew at the mirror would show twice the variance";
 }
 
 }  // namespace
