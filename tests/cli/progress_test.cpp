@@ -10,6 +10,10 @@ class ProgressOption : public Program {};
 
 TEST_F(ProgressOption, JsonGivesAnObjectALine) {
   write_lambert_scene("scene.json");
+  // More than one tile: the end is told, however soon it comes after the beginning.
+  std::string text = read_text(folder_ / "scene.json");
+  text.replace(text.find("\"width\": 16"), 11, "\"width\": 128");
+  write_text(folder_ / "scene.json", text);
   const ProgramResult result =
       run({"scene.json", "-o", "out.exr", "--progress", "json", "--separate", "sun"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
