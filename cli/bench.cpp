@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "cli/aovs_option.h"
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/inspect_report.h"
@@ -31,7 +32,7 @@ struct Arguments {
   std::string scene, json;
   std::optional<int> spp;
   int threads = 0;
-  bool layers = false;
+  std::optional<AovSet> aovs;
   ProgressStyle progress = ProgressStyle::kAuto;
 };
 
@@ -87,10 +88,11 @@ ExitCode bench_command(const Arguments& arguments) {
   ConsoleProgress progress(arguments.progress);
   if (!arguments.json.empty()) require_folder_of(arguments.json);
   const Scene scene = build_scene(load_scene(arguments.scene), progress);
-  const Throughput measured = measure_throughput(
-      scene,
-      {.spp = arguments.spp.value_or(scene.spp), .threads = arguments.threads, .layers = arguments.layers},
-      progress);
+  const Throughput measured = measure_throughput(scene,
+                                                 {.spp = arguments.spp.value_or(scene.spp),
+                                                  .threads = arguments.threads,
+                                                  .aovs = arguments.aovs.value_or(kNoAovs)},
+                                                 progress);
   progress.finish();
   const InspectReport report = report_of(arguments, measured);
   fmt::print("{}", to_text(report));
@@ -109,7 +111,7 @@ void add_bench(CLI::App& app, Action& chosen) {
   command->add_option("--threads", arguments->threads, "of the second render; 0 = all cores")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  command->add_flag("--layers", arguments->layers, "with diffuse, specular, emission and background apart");
+  add_aovs_option(*command, arguments->aovs, "none");
   command->add_option("--json", arguments->json, "also write the figures to this file");
   add_progress_option(*command, arguments->progress);
   command->footer(kNotes);

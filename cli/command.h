@@ -13,12 +13,14 @@ enum class ExitCode : int {
   kUsage = 2,     ///< the command line itself
   kBadInput = 3,  ///< InputError
   kInternal = 4,
+  kInterrupted = 5,  ///< by SIGINT or SIGTERM; what there was is written
 };
 
 using Action = std::function<ExitCode()>;
 
 /// Each adds to `app`; parsing the command line sets `chosen`.
 void add_render(CLI::App& app, Action& chosen);  ///< the main command: `spectrace SCENE.json`
+void add_merge(CLI::App& app, Action& chosen);   ///< parts of one image
 void add_separate(CLI::App& app, Action& chosen);
 void add_compare(CLI::App& app, Action& chosen);
 void add_inspect(CLI::App& app, Action& chosen);

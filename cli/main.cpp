@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kExamples =
     "Examples:\n"
     "  spectrace scenes/cornell_box.json -o box.exr --spp 256\n"
+    "  spectrace scenes/cornell_box.json -o box.exr --spp 4096 --checkpoint 60 --resume\n"
     "  spectrace scenes/material_ball.json --separate diffraction -o ball.exr\n"
     "  spectrace acquire scenes/materials/pearlescent.json -o pearlescent.bsdf\n"
     "  spectrace separate pearlescent.bsdf -o pearlescent.sep\n"
@@ -25,7 +26,8 @@ constexpr const char* kExamples =
     "  spectrace reproduce epfl_rgb -o report\n"
     "  spectrace bench scenes/cornell_box.json\n"
     "\n"
-    "Exit codes: 0 success, 1 images differ or a fit is unusable, 2 usage, 3 bad input, 4 internal error.";
+    "Exit codes: 0 success, 1 images differ or a fit is unusable, 2 usage, 3 bad input, 4 internal error,\n"
+    "5 interrupted.";
 
 ExitCode run(int argc, const char* const* argv) {
   CLI::App app{"Spectral path tracing, with separation of measured BRDFs into diffuse and specular.",
@@ -35,6 +37,7 @@ ExitCode run(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);
   Action chosen;
   add_render(app, chosen);
+  add_merge(app, chosen);
   add_separate(app, chosen);
   add_compare(app, chosen);
   add_inspect(app, chosen);

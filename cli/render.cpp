@@ -4,21 +4,28 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/aovs_option.h"
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/grid_option.h"
 #include "cli/output.h"
-#include "cli/separation_cache.h"
+#include "cli/render_loop.h"
+#include "cli/render_output.h"
+#include "cli/scene_separation.h"
 #include "core/base/error.h"
+#include "core/image/tev_view.h"
 #include "core/image/texture_cache.h"
-#include "separation/choose_model.h"
+#include "renderer/partial_render.h"
+#include "renderer/provenance.h"
 
 namespace spectrace::cli {
 
@@ -26,103 +33,89 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kMaxSpp = 1 << 30;
+constexpr double kViewSeconds = 0.25;
+
 struct Arguments {
-  std::string scene, output;
+  std::string scene;
+  RenderOutput output;
   std::optional<int> spp;
+  std::optional<SampleRange> samples;
   std::optional<std::uint64_t> seed;
+  std::optional<AovSet> aovs;
   int threads = 0;
-  std::string separate;  // a model's name, "auto", or empty
-  double tolerance = kDefaultTolerance;
-  HalfDifferenceGrid grid;
-  bool paired = false;
-  std::string cache;
-  bool strict = false;
-  bool layer_pngs = false;
-  bool beauty_only = false;
-  double exposure = 1;
-  ProgressStyle progress = ProgressStyle::kAuto;
+  double seconds = 0, relative_error = 0;
+  double checkpoint_seconds = 0;
+  bool resume = false;
+  std::optional<TevAddress> tev;
   std::size_t texture_cache = kTextureCacheMiB;
+  SceneSeparation separation;
+  ProgressStyle progress = ProgressStyle::kAuto;
+  bool strict = false;
 };
 
-/// Where separated materials wait for the next run: the user's cache (XDG Base Directory Specification).
-fs::path default_cache() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread starts
-    return std::string(value == nullptr ? "" : value);
-  };
-  if (const std::string cache = variable("XDG_CACHE_HOME"); !cache.empty()) {
-    return fs::path(cache) / "spectrace";
-  }
-  const std::string home = variable("HOME");
-  return (home.empty() ? fs::temp_directory_path() : fs::path(home) / ".cache") / "spectrace";
-}
-
 fs::path output_file(const Arguments& arguments) {
-  const std::string model = arguments.separate.empty() ? "" : "-" + arguments.separate;
-  const fs::path file = arguments.output.empty() ? fs::path(arguments.scene).stem().concat(model + ".exr")
-                                                 : fs::path(arguments.output);
+  const std::string model = arguments.separation.model.empty() ? "" : "-" + arguments.separation.model;
+  fs::path file = arguments.output.file;
+  if (file.empty()) file = fs::path(arguments.scene).stem().concat(model + ".exr");
   require_folder_of(file);
   return file;
 }
 
-/// Every measured material becomes its separated form, or with --paired alone draws its directions. False,
-/// with the reason noted, where one cannot.
-bool separate_materials(SceneDesc& scene, const Arguments& arguments, Progress& progress) {
-  const fs::path cache = arguments.cache.empty() ? default_cache() : fs::path(arguments.cache);
-  const std::optional<SeparationModel> model = separation_model_named(arguments.separate);  // none: auto
-  SeparationOptions options;
-  options.grid = arguments.grid;
-  options.threads = arguments.threads;
-  const bool may_need_residual = arguments.separate == "auto" || model == SeparationModel::kResidual;
-  options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
-  std::size_t count = 0;
-  std::vector<MaterialDesc*> materials;
-  for (MaterialDesc& whole : scene.materials) {
-    for_each_desc(whole, [&](MaterialDesc& part) {
-      if (part.name.empty()) part.name = whole.name;  // for messages
-      materials.push_back(&part);
-    });
+/// How many samples: what is asked for, as many as it takes where another end is, else the scene's.
+RenderOptions render_options(const Arguments& arguments, const Scene& scene) {
+  RenderOptions options{.spp = arguments.spp.value_or(scene.spp),
+                        .seed = arguments.seed.value_or(scene.seed),
+                        .threads = arguments.threads,
+                        .aovs = arguments.aovs.value_or(scene.aovs),
+                        .seconds = arguments.seconds,
+                        .relative_error = arguments.relative_error};
+  if (!arguments.spp && (arguments.seconds > 0 || arguments.relative_error > 0)) options.spp = kMaxSpp;
+  if (arguments.samples) {
+    options.first = arguments.samples->first;
+    options.spp = int(arguments.samples->count());
   }
-  for (MaterialDesc* const each : materials) {
-    MaterialDesc& material = *each;
-    if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
-      const CachedSeparation separated = cached_separation(measured->file, cache, options, progress);
-      if (!separated.report.usable) {
-        progress.note(fmt::format("{}: {}", measured->file.string(), separated.report.verdict));
-        return false;
-      }
-      progress.note(fmt::format("{}: {} {}{}", material.name,
-                                separated.was_cached ? "separated before," : "separated into",
-                                separated.file.string(),
-                                arguments.separate.empty() ? ", which draws its directions (--paired)" : ""));
-      const fs::path directions = arguments.paired ? separated.file : fs::path();
-      ++count;
-      if (arguments.separate.empty()) {
-        material.kind = MeasuredDesc{measured->file, directions};
-        continue;
-      }
-      SeparatedDesc description{.file = separated.file, .model = model, .directions = directions};
-      if (!model) {
-        const ModelChoice choice = choose_model(MeasuredBrdf(read_measured(measured->file)),
-                                                read_separated_source(separated.file), arguments.tolerance);
-        progress.note(fmt::format("{}: model {}", material.name, choice.reason));
-        description.model = choice.model;
-      }
-      material.kind = description;
-    }
-  }
-  if (count == 0) {
-    progress.note(fmt::format("{}: no measured material to separate", scene.file_name));
-  }
-  return true;
+  return options;
 }
 
-void print_summary(const fs::path& file, const RenderOptions& options, const RenderResult& result) {
-  const RenderReport& report = result.report;
+/// The film of a checkpoint, or an empty one where there is none yet.
+Film film_to_start_with(const Scene& scene, const RenderOptions& options, const Arguments& arguments,
+                        Progress& progress) {
+  Film film = new_film(scene, options);
+  const fs::path file = partial_file(arguments.output);
+  if (!arguments.resume) return film;
+  if (!fs::exists(file)) {
+    progress.note(fmt::format("{}: there is none yet, starting from nothing", file.string()));
+    return film;
+  }
+  PartialRender partial = read_partial(file);
+  check_same_image(partial, file, identity_of(scene, options.seed), film.width(), film.height(),
+                   film.layout());
+  if (partial.film.target().first != options.first || !partial.film.set_last(film.target().last)) {
+    const SampleRange range = partial.film.target();
+    throw InputError(file.string(), "",
+                     fmt::format("holds samples of {}:{}, which do not go on to {}:{}", range.first,
+                                 range.last, options.first, film.target().last));
+  }
+  progress.note(fmt::format("{}: going on after {} samples a pixel", file.string(),
+                            partial.film.ends().first * kLeafSamples - options.first));
+  return std::move(partial.film);
+}
+
+Metadata header_of(const Scene& scene, const RenderOptions& options, const RenderSession& session,
+                   const Arguments& arguments) {
+  Metadata metadata = provenance(scene, options, session.report());
+  if (!arguments.separation.model.empty()) metadata["spectrace:separation"] = arguments.separation.model;
+  metadata["spectrace:paired"] = std::int64_t(arguments.separation.paired);
+  return metadata;
+}
+
+void print_summary(const fs::path& file, const Film& film, const RenderReport& report) {
   fmt::print(
       "{}: {} x {}, {} samples a pixel, {:.2f} s on {} threads, {:.3g} million paths/s, {} invalid samples\n",
-      file.string(), result.image.width, result.image.height, options.spp, report.seconds, report.threads,
-      double(report.paths) / report.seconds * 1e-6, report.invalid_samples);
+      file.string(), film.width(), film.height(), report.samples.count(), report.seconds, report.threads,
+      report.seconds > 0 ? double(report.paths) / report.seconds * 1e-6 : 0, report.invalid_samples);
+  if (film.layout().aovs.halves) fmt::print("relative error: {:.3g}\n", film.relative_error());
   if (report.extrapolated_share > 0) {
     fmt::print("extrapolated: {:.2g} % of the measured values seen lie beyond the last measured elevation\n",
                100 * report.extrapolated_share);
@@ -131,46 +124,130 @@ void print_summary(const fs::path& file, const RenderOptions& options, const Ren
   fmt::print("not simulated: {}\n", fmt::join(report.effects_skipped, "; "));
 }
 
-void write_images(const fs::path& file, const Image& image, const Metadata& metadata,
-                  const Arguments& arguments) {
-  write_exr(file, image, metadata);
-  const auto beside = [&](const std::string& suffix) {
-    return fs::path(file).replace_extension().concat(suffix + ".png");
-  };
-  write_png(beside(""), image, "", arguments.exposure);
-  if (arguments.layer_pngs && !arguments.beauty_only) {
-    for (const char* layer : {"diffuse", "specular"}) {
-      write_png(beside(std::string("-") + layer), image, layer, arguments.exposure);
-    }
-  }
-}
-
-ExitCode render_command(const Arguments& arguments) {
+ExitCode render_command(Arguments arguments) {
   ConsoleProgress progress(arguments.progress);
-  const fs::path file = output_file(arguments);
+  arguments.output.file = output_file(arguments);
   set_texture_cache_limit(arguments.texture_cache);
   SceneDesc description = load_scene(arguments.scene);
-  if ((!arguments.separate.empty() || arguments.paired) &&
-      !separate_materials(description, arguments, progress)) {
+  arguments.separation.threads = arguments.threads;
+  if (arguments.separation.is_asked() && !separate_materials(description, arguments.separation, progress)) {
     return ExitCode::kDiffers;
   }
   // Roulette follows the throughput: with it paths of different materials would part.
-  if (arguments.paired) description.integrator.roulette_depth = description.integrator.max_depth;
+  if (arguments.separation.paired) description.integrator.roulette_depth = description.integrator.max_depth;
   const Scene scene = build_scene(description, progress);
-  const RenderOptions options{.spp = arguments.spp.value_or(scene.spp),
-                              .seed = arguments.seed.value_or(scene.seed),
-                              .threads = arguments.threads,
-                              .layers = !arguments.beauty_only};
-  const RenderResult result = render(scene, options, progress);
-  Metadata metadata = provenance(scene, options, result.report);
-  if (!arguments.separate.empty()) {
-    metadata["spectrace:separation"] = arguments.separate;
+  const RenderOptions options = render_options(arguments, scene);
+  RenderSession session(scene, options, film_to_start_with(scene, options, arguments, progress));
+
+  const auto save = [&] {
+    write_partial(
+        partial_file(arguments.output),
+        {identity_of(scene, options.seed), header_of(scene, options, session, arguments), session.film()});
+  };
+  std::vector<Recurring> tasks;
+  if (arguments.checkpoint_seconds > 0) tasks.push_back({arguments.checkpoint_seconds, save});
+  std::optional<TevView> view;
+  if (arguments.tev) {
+    view.emplace(*arguments.tev, arguments.output.file.filename().string(), progress);
+    tasks.push_back({kViewSeconds, [&] {
+                       if (view->wants_picture()) view->show(session.film().resolve());
+                     }});
   }
-  metadata["spectrace:paired"] = std::int64_t(arguments.paired);
-  write_images(file, result.image, metadata, arguments);
+  const bool is_done = run(session, tasks, progress);
+  if (view) view->finish(session.film().resolve());
+
+  const bool keeps_partial = arguments.checkpoint_seconds > 0 || arguments.resume || arguments.samples;
+  if (keeps_partial) save();
+  write_images(arguments.output, session.film(), header_of(scene, options, session, arguments));
   progress.finish();
-  print_summary(file, options, result);
-  return arguments.strict && result.report.invalid_samples > 0 ? ExitCode::kDiffers : ExitCode::kSuccess;
+  const RenderReport report = session.report();
+  print_summary(arguments.output.file, session.film(), report);
+  if (!is_done) {
+    fmt::print("interrupted: {}\n",
+               keeps_partial ? "--resume goes on" : "without --checkpoint, nothing to go on with");
+    return ExitCode::kInterrupted;
+  }
+  return arguments.strict && report.invalid_samples > 0 ? ExitCode::kDiffers : ExitCode::kSuccess;
+}
+
+/// "FIRST:LAST"
+SampleRange parse_samples(const std::string& text) {
+  const auto wrong = [&](const std::string& problem) { return CLI::ValidationError("--samples", problem); };
+  const std::size_t colon = text.find(':');
+  SampleRange range;
+  if (colon == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, colon), range.first) ||
+      !CLI::detail::lexical_cast(text.substr(colon + 1), range.last)) {
+    throw wrong(fmt::format("expected FIRST:LAST, got \"{}\"", text));
+  }
+  if (range.first >= range.last || range.last > kMaxSpp) {
+    throw wrong(fmt::format("expected FIRST below LAST, and LAST at most {}", kMaxSpp));
+  }
+  if (range.first % kLeafSamples != 0) {
+    throw wrong(
+        fmt::format("FIRST must be a multiple of {}: samples are traced in packs of it", kLeafSamples));
+  }
+  return range;
+}
+
+void add_sample_options(CLI::App& app, Arguments& arguments) {
+  auto* spp = app.add_option("--spp", arguments.spp, "samples a pixel; default: the scene's")
+                  ->check(CLI::Range(1, kMaxSpp));
+  app.add_option("--time", arguments.seconds, "stop after so many seconds of rendering, all pixels alike")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--noise", arguments.relative_error,
+                 "stop at this relative error of the image, as its two halves tell (docs/aovs.md)")
+      ->check(CLI::PositiveNumber);
+  app.add_option_function<std::string>(
+         "--samples", [&arguments](const std::string& text) { arguments.samples = parse_samples(text); },
+         "take samples FIRST:LAST of each pixel only (LAST is not among them) and write OUT.partial, for "
+         "`spectrace merge`")
+      ->excludes(spp);
+  app.add_option("--checkpoint", arguments.checkpoint_seconds,
+                 "write OUT.partial every so many seconds, and at the end")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--resume", arguments.resume,
+               "go on with OUT.partial, if there is one, to the identical image");
+}
+
+TevAddress parse_tev(const std::string& text) {
+  if (const auto address = parse_tev_address(text)) return *address;
+  throw CLI::ValidationError("--tev", fmt::format("expected HOST:PORT, got \"{}\"", text));
+}
+
+void add_separation_options(CLI::App& app, SceneSeparation& separation) {
+  app.add_option("--separate", separation.model,
+                 "separate every measured material first and render it with this model; auto: the "
+                 "cheapest within --tolerance")
+      ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "auto"}));
+  app.add_option("--tolerance", separation.tolerance,
+                 "of --separate auto: share of the reflected light a model may get wrong")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  add_grid_option(app, separation.grid);
+  app.add_flag("--paired", separation.paired,
+               "for comparing pictures: whatever describes a measured material, draw the directions that its "
+               "diffraction model draws, so that pictures share their noise");
+  app.add_option("--cache", separation.cache,
+                 "folder that keeps separated materials; default: ~/.cache/spectrace");
+}
+
+void add_output_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("-o,--output", arguments.output.file,
+                 "image to write (.exr), a .png beside it; default: the scene's name, and the model's of "
+                 "--separate, in the current folder");
+  add_aovs_option(app, arguments.aovs, "the scene's \"aovs\", else lobes");
+  const std::map<std::string, AovNames> names{
+      {"arnold", AovNames::kArnold}, {"blender", AovNames::kBlender}, {"kpcn", AovNames::kKpcn}};
+  app.add_option("--aov-names", arguments.output.names, "whose names the channels get: arnold, blender, kpcn")
+      ->transform(CLI::CheckedTransformer(names))
+      ->default_str("arnold");
+  app.add_option("--exposure", arguments.output.exposure, "factor on the PNG, not on the EXR")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option_function<std::string>(
+      "--tev", [&arguments](const std::string& text) { arguments.tev = parse_tev(text); },
+      "show the picture in tev while it is made, at HOST:PORT (tev's own: 127.0.0.1:14158)");
+  app.add_flag("--layer-pngs", arguments.output.layer_pngs, "also write -diffuse.png and -specular.png");
 }
 
 }  // namespace
@@ -178,46 +255,24 @@ ExitCode render_command(const Arguments& arguments) {
 void add_render(CLI::App& app, Action& chosen) {
   const auto arguments = std::make_shared<Arguments>();
   app.add_option("scene", arguments->scene, "scene to render (.json)");
-  app.add_option("-o,--output", arguments->output,
-                 "image to write (.exr), a .png beside it; default: the scene's name, and the model's of "
-                 "--separate, in the current folder");
-  app.add_option("--spp", arguments->spp, "samples a pixel; default: the scene's")
-      ->check(CLI::Range(1, 1 << 30));
+  add_output_options(app, *arguments);
+  add_sample_options(app, *arguments);
   app.add_option("--seed", arguments->seed, "of the random numbers; default: the scene's");
   app.add_option("--threads", arguments->threads, "0 = all cores; changes no bit of the image")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  app.add_option("--separate", arguments->separate,
-                 "separate every measured material first and render it with this model; auto: the "
-                 "cheapest within --tolerance")
-      ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "auto"}));
-  app.add_option("--tolerance", arguments->tolerance,
-                 "of --separate auto: share of the reflected light a model may get wrong")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  add_grid_option(app, arguments->grid);
-  app.add_flag("--paired", arguments->paired,
-               "for comparing pictures: whatever describes a measured material, draw the directions that its "
-               "diffraction model draws, so that pictures share their noise");
-  app.add_option("--cache", arguments->cache,
-                 "folder that keeps separated materials; default: ~/.cache/spectrace");
-  app.add_option("--exposure", arguments->exposure, "factor on the PNG, not on the EXR")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_separation_options(app, arguments->separation);
   app.add_option("--texture-cache", arguments->texture_cache,
                  "mebibytes of textures kept in memory; changes no bit of the image")
       ->check(CLI::Range(20, 1 << 24))
       ->capture_default_str();
-  app.add_flag("--layer-pngs", arguments->layer_pngs, "also write -diffuse.png and -specular.png");
-  app.add_flag("--beauty-only", arguments->beauty_only,
-               "leave out diffuse, specular, emission and background: faster");
   add_progress_option(app, arguments->progress);
   app.add_flag("--strict", arguments->strict, "exit with 1 if any sample was invalid (not finite, negative)");
   app.callback([&app, &chosen, arguments] {
     if (arguments->scene.empty() || !app.get_subcommands().empty()) {
       return;
     }
-    if (!arguments->output.empty() && fs::path(arguments->output).extension() != ".exr") {
+    if (!arguments->output.file.empty() && arguments->output.file.extension() != ".exr") {
       throw CLI::ValidationError("--output", "must end in .exr");
     }
     chosen = [arguments] { return render_command(*arguments); };

@@ -14,6 +14,10 @@ struct Lambert {
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
+  /// Share of light that the diffuse lobe sends to wo from all around.
+  [[nodiscard]] SampledSpectrum diffuse_albedo(Vec3, const ShadingPoint& at) const {
+    return reflectance.sample(at.lambda, at.uv, at.footprint);
+  }
 };
 
 /// Directions in proportion to cosθ / π: Malley's method over a concentric disk (Shirley & Chiu 1997).

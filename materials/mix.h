@@ -21,6 +21,8 @@ class Mix {
   [[nodiscard]] bool is_delta() const { return first_.is_delta() && second_.is_delta(); }
   [[nodiscard]] Float pass_through(bool from_front, const ShadingPoint& at) const;
 
+  /// Of the second material.
+  [[nodiscard]] Float weight(const ShadingPoint& at) const { return weight_.at(at.uv, at.footprint); }
   [[nodiscard]] const auto& texture() const { return weight_; }
   [[nodiscard]] std::array<const NestedMaterial*, 2> parts() const { return {&first_, &second_}; }
 

@@ -29,15 +29,14 @@ Plastic::View Plastic::view(Vec3 wo, const ShadingPoint& at) const {
   View v;
   v.eta = eta_.sample(at.lambda);
   const SampledSpectrum rho = reflectance_.sample(at.lambda, at.uv, at.footprint);
-  SampledSpectrum diffuse_albedo;
   for (int i = 0; i < kLanes; ++i) {
     v.coat_albedo[i] = albedo_->at(wo.z, v.eta[i]);
     const Float into = 1 - albedo_->average(v.eta[i]);  // of diffuse light from outside
     const Float out = into / sqr(v.eta[i]);             // of diffuse light from within: 1 - F_in
     v.diffuse_part[i] = (1 - v.coat_albedo[i]) / sqr(v.eta[i]) * rho[i] / (1 - rho[i] * (1 - out));
-    diffuse_albedo[i] = v.diffuse_part[i] * into;
+    v.diffuse_albedo[i] = v.diffuse_part[i] * into;
   }
-  const Float coat = v.coat_albedo.average(), diffuse = diffuse_albedo.average();
+  const Float coat = v.coat_albedo.average(), diffuse = v.diffuse_albedo.average();
   v.coat_probability = safe_div(coat, coat + diffuse);
   return v;
 }

@@ -29,6 +29,10 @@ class Plastic {
   /// Chooses the lobe by its albedo seen from wo, averaged over the lanes.
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
+  /// Share of light that the diffuse lobe sends to wo from all around.
+  [[nodiscard]] SampledSpectrum diffuse_albedo(Vec3 wo, const ShadingPoint& at) const {
+    return view(wo, at).diffuse_albedo;
+  }
   [[nodiscard]] bool has_delta_lobe() const { return alpha_ == 0; }
 
   [[nodiscard]] const auto& texture() const { return reflectance_; }
@@ -40,6 +44,7 @@ class Plastic {
     SampledSpectrum eta;
     SampledSpectrum coat_albedo;   // E(θo)
     SampledSpectrum diffuse_part;  // of the diffuse lobe all but T(θi) cosθi / π
+    SampledSpectrum diffuse_albedo;
     Float coat_probability = 0;
   };
   [[nodiscard]] View view(Vec3 wo, const ShadingPoint& at) const;

@@ -48,14 +48,17 @@ bool has_images(const Material& material) {
   return any_texture(material, [](const auto& texture) { return texture.is_image(); });
 }
 
-Features required_features(const Scene& scene, bool layers) {
-  Features f{.depth_of_field = scene.camera.has_lens(),
-             .indirect = scene.integrator.max_depth > 1,
-             .area_lights = scene.lights.area_count() > 0,
-             .delta_lights = scene.lights.delta_count() > 0,
-             .environment = scene.lights.environment().has_value(),
-             .instances = !scene.geometry.instances.empty(),
-             .lobe_layers = layers};
+Features required_features(const Scene& scene, const AovSet& aovs) {
+  Features f{
+      .depth_of_field = scene.camera.has_lens(),
+      .indirect = scene.integrator.max_depth > 1,
+      .area_lights = scene.lights.area_count() > 0,
+      .delta_lights = scene.lights.delta_count() > 0,
+      .environment = scene.lights.environment().has_value(),
+      .instances = !scene.geometry.instances.empty(),
+      .lobe_layers = aovs.lobes,
+      .more_aovs = aovs.direct || aovs.halves || aovs.variance || aovs.any_feature() || aovs.extrapolated,
+      .spectral_film = scene.film.spectral.has_value()};
   for (const Shape& shape : scene.geometry.shapes) {
     const Material& material = scene.materials[shape.material];
     f.delta_lobes |= is_delta(material);
@@ -64,7 +67,7 @@ Features required_features(const Scene& scene, bool layers) {
     for_each_part(material, [&](const Material& part) {
       f.dispersion |= is_dispersive(part);
       f.nested |= &part != &material;
-      f.specular_parts |= layers && has_specular_parts(part);
+      f.specular_parts |= aovs.lobes && aovs.specular_parts && has_specular_parts(part);
     });
   }
   return f;

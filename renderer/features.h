@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "renderer/film.h"
+#include "renderer/aovs.h"
+#include "renderer/layers.h"
 #include "renderer/scene.h"
 
 namespace spectrace {
@@ -28,6 +29,8 @@ struct Features {
   bool instances = false;
   bool lobe_layers = false;     ///< diffuse, specular, emission, background apart
   bool specular_parts = false;  ///< and within specular: Fresnel part, diffraction effect, residual
+  bool more_aovs = false;       ///< direct light apart, halves, variances, what the first hit looks like
+  bool spectral_film = false;
 
   friend constexpr bool operator==(const Features&, const Features&) = default;
 };
@@ -38,7 +41,7 @@ struct FeatureInfo {
   std::string_view name;
   std::string_view missing;
 };
-inline constexpr std::array<FeatureInfo, 13> kFeatureInfos{{
+inline constexpr std::array<FeatureInfo, 15> kFeatureInfos{{
     {&Features::indirect, "indirect light", "max_depth is at most 1"},
     {&Features::area_lights, "area lights", "no shape emits"},
     {&Features::delta_lights, "point, spot and directional lights", "none in the scene"},
@@ -52,6 +55,8 @@ inline constexpr std::array<FeatureInfo, 13> kFeatureInfos{{
     {&Features::lobe_layers, "layers by lobe", "not asked for"},
     {&Features::specular_parts, "parts of the specular layer",
      "not asked for, or no separated material that has them"},
+    {&Features::more_aovs, "AOVs beyond the lobes", "not asked for"},
+    {&Features::spectral_film, "spectral film", "not asked for"},
     {&Features::depth_of_field, "depth of field", "the camera has no lens"},
 }};
 
@@ -76,8 +81,11 @@ constexpr bool covers(const Features& kernel, const Features& needed) {
 
 /// The layers a kernel gathers.
 constexpr LayerSet layer_set(const Features& features) {
-  if (features.specular_parts) return LayerSet::kSpecularParts;
-  return features.lobe_layers ? LayerSet::kLobes : LayerSet::kBeauty;
+  LayerSet layers = kBeautyLayer;
+  if (features.lobe_layers) layers = layers | kLobeLayers;
+  if (features.specular_parts) layers = layers | kSpecularParts;
+  if (features.more_aovs && features.lobe_layers) layers = layers | kDirectLayers;
+  return layers;
 }
 
 /// It, or a part of it, varies over the surface.
@@ -85,8 +93,8 @@ constexpr LayerSet layer_set(const Features& features) {
 /// Among what varies over the surface is an image: lookups have footprints.
 [[nodiscard]] bool has_images(const Material& material);
 
-/// What this scene calls for. `layers`: the user wants them apart.
-[[nodiscard]] Features required_features(const Scene& scene, bool layers);
+/// What this scene and the AOVs asked for call for.
+[[nodiscard]] Features required_features(const Scene& scene, const AovSet& aovs);
 
 /// "environment" ...; "dispersion: no material's refraction varies with wavelength" ...
 struct EffectList {

@@ -9,8 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/math/concentric_disk.h"
+#include "core/spectra/color.h"
 #include "renderer/flush_denormals.h"
 #include "renderer/path_tracer.h"
+#include "renderer/pixel_sums.h"
 
 namespace spectrace {
 
@@ -23,15 +25,97 @@ Ray camera_ray(const Camera& camera, const PathNumbers& numbers, int x, int y) {
   return camera.ray(position);
 }
 
-template <int kLayers>
-void add_to(PixelSums& sums, const PathValue<kLayers>& value) {
+/// As many places of a pixel's row as a kernel fills.
+template <Features kFeatures>
+constexpr std::size_t row_size() {
+  if (kFeatures.more_aovs) return slots::kCount;
+  if (kFeatures.specular_parts) return slots::xyz(Layer::kSpecularResidual) + 3;
+  return slots::xyz(kFeatures.lobe_layers ? Layer::kBackground : Layer::kBeauty) + 3;
+}
+
+/// What the samples of one leaf bring to a pixel.
+template <Features kFeatures>
+struct LeafSums {
+  PixelSums<row_size<kFeatures>()> row;
+  std::vector<float> bins;
+
+  void clear() {
+    row = {};
+    std::fill(bins.begin(), bins.end(), 0.0F);
+  }
+  LeafSums& operator+=(const LeafSums& other) {
+    row += other.row;
+    for (std::size_t i = 0; i < bins.size(); ++i) bins[i] += other.bins[i];
+    return *this;
+  }
+};
+
+/// Halves, squares and the first hit of one sample.
+template <typename Row, Features kFeatures>
+void add_more_aovs(Row& row, const PathValue<kFeatures>& value, bool is_in_b) {
+  for (std::size_t m = 0; m < kMomentLayers; ++m) {
+    if (!value.kLayers.has(Layer(m))) continue;
+    const PathXyz& xyz = value.xyz[value.kLayers.slot(Layer(m))];
+    const Rgb rgb = xyz_to_rgb({xyz[0], xyz[1], xyz[2]});
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (is_in_b) row[slots::b_xyz(m) + c] += xyz[c];
+      row[slots::rgb_squares(m) + c] += rgb[c] * rgb[c];
+    }
+  }
+  row[slots::kExtrapolated] += value.extrapolated;
+  const FirstHit& seen = value.first_hit;
+  if (!seen.is_known) return;
+  std::size_t at = 0;
+  const auto add = [&](double x) {
+    row[slots::kFeatures + at] += x;
+    row[slots::kFeatureSquares + at] += x * x;
+    ++at;
+  };
+  for (const double x : seen.albedo.diffuse) add(x);
+  for (const double x : seen.albedo.specular) add(x);
+  for (std::size_t c = 0; c < 3; ++c) add(std::min(1.0, seen.albedo.diffuse[c] + seen.albedo.specular[c]));
+  for (const Vec3& v : {seen.normal, seen.position}) {
+    for (const Float x : {v.x, v.y, v.z}) add(double(x));
+  }
+  add(seen.depth);
+}
+
+/// Each lane's radiance into the bin of its wavelength.
+void add_to_bins(std::vector<float>& sums, const FilmLayout& layout, const LaneDeposits& lanes) {
+  const SpectralBins& bins = *layout.bins;
+  for (std::size_t d = 0; d < lanes.count; ++d) {
+    const LaneDeposits::Deposit& deposit = lanes.deposits[d];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double pdf = double(deposit.lambda.pdf_per_nm(lane));
+      const std::size_t bin = bins.bin_of(deposit.lambda.lambda_nm(lane));
+      if (!(pdf > 0) || bin == bins.count) continue;  // a terminated lane says nothing
+      const double weight = 1 / (pdf * kLanes * bins.width_nm());
+      for (std::size_t i = 0; i < kSpectralLayers.size(); ++i) {
+        const Layer layer = kSpectralLayers[i];
+        if (!layout.bin_layers.has(layer)) continue;
+        sums[layout.bin_layers.slot(layer) * bins.count + bin] +=
+            static_cast<float>(deposit.radiance[i].v[std::size_t(lane)] * weight);
+      }
+    }
+  }
+}
+
+template <Features kFeatures>
+void add_to(LeafSums<kFeatures>& sums, const PathValue<kFeatures>& value, const FilmLayout& layout,
+            bool is_in_b) {
+  auto& row = sums.row.v;
   if (!value.valid) {
-    ++sums.invalid;
+    row[slots::kInvalid] += 1;
+    if constexpr (kFeatures.more_aovs) row[slots::kInvalidB] += is_in_b ? 1 : 0;
     return;
   }
-  ++sums.valid;
-  for (std::size_t layer = 0; layer < kLayers; ++layer) {
-    for (std::size_t c = 0; c < 3; ++c) sums.xyz[layer][c] += value.xyz[layer][c];
+  value.kLayers.for_each([&](Layer layer) {
+    const PathXyz& xyz = value.xyz[value.kLayers.slot(layer)];
+    for (std::size_t c = 0; c < 3; ++c) row[slots::xyz(layer) + c] += xyz[c];
+  });
+  if constexpr (kFeatures.more_aovs) add_more_aovs(row, value, is_in_b);
+  if constexpr (kFeatures.spectral_film) {
+    if (layout.bins) add_to_bins(sums.bins, layout, value.lanes);
   }
 }
 
@@ -40,11 +124,11 @@ void add_to(PixelSums& sums, const PathValue<kLayers>& value) {
 template <Features kFeatures>
 class Pack {
  public:
-  Pack(const Scene& scene, TraceLog* log) : scene_(scene), log_(log) {}
+  Pack(const RenderJob& job, TraceLog* log) : job_(job), scene_(job.scene), log_(log) {}
 
   void add(const Sampler& sampler, int x, int y) {
     const PathNumbers numbers = sampler.path();
-    paths_.emplace_back(scene_, sampler, numbers.wavelength,
+    paths_.emplace_back(job_, sampler, numbers.wavelength,
                         camera_ray<kFeatures>(scene_.camera, numbers, x, y));
   }
 
@@ -70,12 +154,13 @@ class Pack {
     }
   }
 
-  void finish(PixelSums& sums) {
+  void finish(LeafSums<kFeatures>& sums) {
+    std::uint64_t sample = 0;
     for (auto& path : paths_) {
       const auto& value = path.finish();
       counts_.measured += value.measured;
       counts_.extrapolated += value.extrapolated;
-      add_to(sums, value);
+      add_to<kFeatures>(sums, value, job_.layout, sample++ >= kLeafSamples / 2);
     }
     paths_.clear();
   }
@@ -93,6 +178,7 @@ class Pack {
     for (; mask != 0; mask &= mask - 1) visit(std::size_t(std::countr_zero(mask)));
   }
 
+  const RenderJob& job_;
   const Scene& scene_;
   TraceLog* log_;
   TileCounts counts_;
@@ -102,25 +188,33 @@ class Pack {
 };
 
 template <Features kFeatures>
-TileCounts render_tile(const Scene& scene, std::uint64_t seed, SampleRange samples, Tile tile, Film& film,
-                       TraceLog* log) {
+TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, TileSums& sums, TraceLog* log) {
+  static_assert(kLeafSamples == kPacket, "a leaf is what is traced together");
   const FlushDenormals flush;
-  const CropWindow window = scene.film.window();
-  Pack<kFeatures> pack(scene, log);
+  const FilmDesc& film = job.scene.film;
+  const CropWindow window = film.window();
+  const std::size_t bins = job.layout.bins_per_pixel();
+  LeafSums<kFeatures> leaf{.row = {}, .bins = std::vector<float>(bins)};
+  BlockSum<LeafSums<kFeatures>> block(leaf);
+  sums.rows.clear();
+  sums.bins.clear();
+  Pack<kFeatures> pack(job, log);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
       const int image_x = window.x + x, image_y = window.y + y;
-      const std::uint64_t pixel =
-          std::uint64_t(image_y) * std::uint64_t(scene.film.width) + std::uint64_t(image_x);
-      PixelSums sums;
-      for (std::uint64_t first = samples.first; first < samples.last;) {
-        // Packs begin at multiples of their size: ranges that do so too are packed alike.
-        const std::uint64_t end = std::min(samples.last, (first / kPacket + 1) * kPacket);
-        for (; first < end; ++first) pack.add(Sampler(pixel, first, seed), image_x, image_y);
+      const std::uint64_t pixel = std::uint64_t(image_y) * std::uint64_t(film.width) + std::uint64_t(image_x);
+      block.clear();
+      for (std::uint64_t first = samples.first; first < samples.last; first += kLeafSamples) {
+        const std::uint64_t end = std::min(samples.last, first + kLeafSamples);
+        for (std::uint64_t i = first; i < end; ++i) pack.add(Sampler(pixel, i, job.seed), image_x, image_y);
         pack.trace();
-        pack.finish(sums);
+        leaf.clear();
+        pack.finish(leaf);
+        block.add(leaf);
       }
-      film.add(x, y, sums);
+      const LeafSums<kFeatures>& sum = block.sum();
+      for (const std::size_t slot : job.kept_slots) sums.rows.push_back(sum.row.v[slot]);
+      sums.bins.insert(sums.bins.end(), sum.bins.begin(), sum.bins.end());
     }
   }
   return pack.counts();
@@ -149,6 +243,10 @@ constexpr Features kOpaque{.indirect = true,
                            .lobe_layers = true};
 constexpr Features kFull = all_features();
 
+constexpr Features with_more_aovs(Features f) {
+  f.more_aovs = true;
+  return f;
+}
 constexpr Features without_layers(Features f) {
   f.lobe_layers = false;
   return f;
@@ -166,6 +264,7 @@ constexpr std::array kKernels{
     make_kernel<kBox>("box"),
     make_kernel<kStudio>("studio"),
     make_kernel<with_specular_parts(kStudio)>("studio, specular parts"),
+    make_kernel<with_more_aovs(with_specular_parts(kStudio))>("studio, AOVs"),
     make_kernel<kOpaque>("opaque"),
     make_kernel<kFull>("full"),
 };

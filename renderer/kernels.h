@@ -10,19 +10,9 @@
 #include "renderer/accel_embree.h"
 #include "renderer/features.h"
 #include "renderer/film.h"
-#include "renderer/scene.h"
+#include "renderer/render_job.h"
 
 namespace spectrace {
-
-/// Pixels [x0, x1) x [y0, y1).
-struct Tile {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-};
-
-/// Samples [first, last) of each pixel.
-struct SampleRange {
-  std::uint64_t first = 0, last = 0;
-};
 
 /// What rendering a tile came to.
 struct TileCounts {
@@ -39,9 +29,10 @@ struct TracedPacket {
 };
 using TraceLog = std::vector<TracedPacket>;
 
-/// `tile` in pixels of the film, which holds the scene's crop window. `log`: may be null.
-using RenderTile = TileCounts (*)(const Scene& scene, std::uint64_t seed, SampleRange samples, Tile tile,
-                                  Film& film, TraceLog* log);
+/// Renders samples of each pixel of a tile, in pixels of the film, which holds the scene's crop window. The
+/// samples' leaves must be one block. `log`: may be null.
+using RenderTile = TileCounts (*)(const RenderJob& job, SampleRange samples, Tile tile, TileSums& sums,
+                                  TraceLog* log);
 
 struct Kernel {
   std::string_view name;

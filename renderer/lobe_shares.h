@@ -7,7 +7,7 @@
 
 #include "core/spectra/lane_to_xyz.h"
 #include "materials/bsdf.h"
-#include "renderer/film.h"
+#include "renderer/layers.h"
 
 namespace spectrace {
 
@@ -35,21 +35,27 @@ LobeShares lobe_shares(const LobeValues& lobes) {
   return share;
 }
 
-/// Adds `radiance` to the lobes' layers of `sums`, by Layer.
-template <bool kParts>
-void add_split(std::span<LaneSums> sums, const SampledSpectrum& radiance, const LobeShares& share) {
-  const auto to = [&](Layer layer) -> LaneSums& { return sums[std::size_t(layer)]; };
+/// Adds `radiance` to the lobes' layers of `sums`, which are those of `kLayers` in their order.
+template <LayerSet kLayers>
+void add_split(std::span<LaneSums> sums, const SampledSpectrum& radiance, const LobeShares& share,
+               [[maybe_unused]] bool is_direct) {
+  const auto to = [&](Layer layer) -> LaneSums& { return sums[kLayers.slot(layer)]; };
   const auto part = [](Float all, Float of_it) { return double(all) * double(of_it); };
   const auto rest = [](Float all, Float of_it) { return double(all) - double(all) * double(of_it); };
   to(Layer::kDiffuse).add(part, radiance, share.diffuse);
   to(Layer::kSpecular).add(rest, radiance, share.diffuse);
-  if constexpr (kParts) {
+  if constexpr (kLayers.has(Layer::kSpecularFresnel)) {
     const auto residual = [&](Float all, Float diffuse, Float fresnel, Float diffraction) {
       return rest(all, diffuse) - part(all, fresnel) - part(all, diffraction);
     };
     to(Layer::kSpecularFresnel).add(part, radiance, share.fresnel);
     to(Layer::kSpecularDiffraction).add(part, radiance, share.diffraction);
     to(Layer::kSpecularResidual).add(residual, radiance, share.diffuse, share.fresnel, share.diffraction);
+  }
+  if constexpr (kLayers.has(Layer::kDiffuseDirect)) {
+    if (!is_direct) return;
+    to(Layer::kDiffuseDirect).add(part, radiance, share.diffuse);
+    to(Layer::kSpecularDirect).add(rest, radiance, share.diffuse);
   }
 }
 

@@ -9,8 +9,9 @@
 #include "core/math/sampler.h"
 #include "core/spectra/lane_to_xyz.h"
 #include "renderer/features.h"
-#include "renderer/film.h"
+#include "renderer/first_hit.h"
 #include "renderer/lobe_shares.h"
+#include "renderer/render_job.h"
 #include "renderer/scene.h"
 #include "renderer/surface.h"
 #include "renderer/uv_footprint.h"
@@ -27,22 +28,30 @@ inline constexpr Float kMinSurvival = Float(0.05), kMaxSurvival = Float(0.95);
 inline constexpr Float kMinShadingCosine = Float(1e-3);
 
 /// What one path brings.
-template <int kLayers>
+template <Features kFeatures>
 struct PathValue {
-  std::array<PathXyz, kLayers> xyz{};
+  static constexpr LayerSet kLayers = layer_set(kFeatures);
+
+  std::array<PathXyz, kLayers.size()> xyz{};
   bool valid = true;  ///< all of it finite and, where a layer is not signed, >= 0
   /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
   std::uint32_t measured = 0, extrapolated = 0;
+  std::conditional_t<kFeatures.more_aovs, FirstHit, NoFirstHit> first_hit;
+  std::conditional_t<kFeatures.spectral_film, LaneDeposits, NoLaneDeposits> lanes;
 };
 
 template <Features kFeatures>
 class PathTracer {
  public:
-  static constexpr int kLayers = int(layer_set(kFeatures));
+  static constexpr LayerSet kLayers = layer_set(kFeatures);
 
-  PathTracer(const Scene& scene, const Sampler& sampler, Float wavelength, const Ray& camera_ray)
-      : scene_(scene), sampler_(sampler), lambda_(scene.wavelengths.sample(wavelength)), ray_(camera_ray) {
-    if constexpr (kFeatures.textures) cone_ = scene.cone(camera_ray, sampler.sample());
+  PathTracer(const RenderJob& job, const Sampler& sampler, Float wavelength, const Ray& camera_ray)
+      : scene_(job.scene),
+        albedos_(job.albedos),
+        sampler_(sampler),
+        lambda_(sample_wavelengths(job, sampler, wavelength)),
+        ray_(camera_ray) {
+    if constexpr (kFeatures.textures) cone_ = job.scene.cone(camera_ray, sampler.sample());
   }
 
   /// The ray whose hit advance() wants.
@@ -59,6 +68,7 @@ class PathTracer {
       return false;
     }
     const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray_, *hit);
+    if constexpr (kFeatures.more_aovs) length_ += double(hit->t);
     add_emission(point, ray_.direction);
     if constexpr (kFeatures.textures) {
       if (scene_.has_images) {
@@ -76,10 +86,10 @@ class PathTracer {
   [[nodiscard]] const std::optional<Ray>& shadow_ray() const { return shadow_ray_; }
   void receive_light() {
     add_to(Layer::kBeauty, awaited_.radiance);
-    if constexpr (kFeatures.lobe_layers) split(awaited_.radiance, awaited_.share);
+    if constexpr (kFeatures.lobe_layers) split(awaited_.radiance, awaited_.share, awaited_.is_direct);
   }
 
-  [[nodiscard]] const PathValue<kLayers>& finish() {
+  [[nodiscard]] const PathValue<kFeatures>& finish() {
     flush();
     return value_;
   }
@@ -88,6 +98,14 @@ class PathTracer {
   static constexpr SurfaceQuery kQuery{.instances = kFeatures.instances, .uv = kFeatures.textures};
 
   static constexpr bool kParts = kFeatures.specular_parts;
+
+  static SampledWavelengths sample_wavelengths(const RenderJob& job, [[maybe_unused]] const Sampler& sampler,
+                                               Float u) {
+    if constexpr (kFeatures.spectral_film) {
+      if (job.layout.bins) return job.scene.wavelengths.sample(u, sampler.lane_shifts());
+    }
+    return job.scene.wavelengths.sample(u);
+  }
 
   [[nodiscard]] int max_depth() const {
     if constexpr (kFeatures.indirect) return scene_.integrator.max_depth;
@@ -137,24 +155,29 @@ class PathTracer {
       } else if (!has_share_) {
         add_to(Layer::kSpecular, radiance);
         if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
+        if constexpr (kLayers.has(Layer::kSpecularDirect)) {
+          if (depth_ == 1) add_to(Layer::kSpecularDirect, radiance);
+        }
       } else {
-        split(radiance, share_);
+        split(radiance, share_, depth_ == share_depth_ + 1);
       }
     }
   }
 
-  void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[std::size_t(layer)] += radiance; }
-  void split(const SampledSpectrum& radiance, const LobeShares& share) {
-    add_split<kParts>(sums_, radiance, share);
+  void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[kLayers.slot(layer)] += radiance; }
+  void split(const SampledSpectrum& radiance, const LobeShares& share, bool is_direct) {
+    add_split<kLayers>(sums_, radiance, share, is_direct);
   }
 
   /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
   void flush() {
     const LaneToXyz weights(lambda_);
-    for (std::size_t layer = 0; layer < kLayers; ++layer) {
-      value_.valid &= weights.add(sums_[layer], value_.xyz[layer], is_signed(int(layer)));
-      sums_[layer] = {};
-    }
+    if constexpr (kFeatures.spectral_film) value_.lanes.template add<kLayers>(lambda_, sums_);
+    kLayers.for_each([&](Layer layer) {
+      const std::size_t slot = kLayers.slot(layer);
+      value_.valid &= weights.add(sums_[slot], value_.xyz[slot], is_signed(layer));
+      sums_[slot] = {};
+    });
   }
 
   // ---- What goes on -------------------------------------------------------------------------------------
@@ -222,6 +245,7 @@ class PathTracer {
       awaited_.share = has_share_
                            ? share_
                            : lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, vertex.at));
+      awaited_.is_direct = !has_share_;
     }
     const Ray ray = shadow_ray(ray_origin(vertex.point, light->wi), *light);
     if constexpr (kFeatures.nested) {
@@ -295,13 +319,36 @@ class PathTracer {
 
   /// The last ray only fetches light, which may shine through holes. False: the path ends.
   bool pass([[maybe_unused]] const SurfacePoint& point) {
+    const bool may_pass = kFeatures.nested && scene_.has_holes;
+    if (!may_pass && !wants_first_hit()) return false;
+    const Vertex vertex = make_vertex(point, -ray_.direction);
     if constexpr (kFeatures.nested) {
-      if (!scene_.has_holes) return false;
-      const Vertex vertex = make_vertex(point, -ray_.direction);
-      const std::optional<BsdfSample> s = sample_vertex(vertex);
-      return s && s->passes && go_straight_on(vertex, *s);
+      if (const auto s = may_pass ? sample_vertex(vertex) : std::nullopt; s && s->passes) {
+        return go_straight_on(vertex, *s);
+      }
     }
+    if (wants_first_hit()) look_at(vertex);
     return false;
+  }
+
+  // ---- What is seen at the first hit --------------------------------------------------------------------
+
+  [[nodiscard]] bool wants_first_hit() const {
+    if constexpr (kFeatures.more_aovs) return !value_.first_hit.is_known;
+    return false;
+  }
+  void look_at([[maybe_unused]] const Vertex& vertex) {
+    if constexpr (kFeatures.more_aovs) {
+      if (is_delta(vertex.material)) return;
+      FirstHit& seen = value_.first_hit;
+      seen.is_known = true;
+      if (albedos_ != nullptr) {
+        seen.albedo = albedos_->at(vertex.material, vertex.wo, vertex.at);
+      }
+      seen.normal = vertex.frame.n;
+      seen.position = vertex.point.position;
+      seen.depth = length_;
+    }
   }
 
   /// Next-event estimation and the next ray. False: the path ends.
@@ -316,16 +363,17 @@ class PathTracer {
     if (!only_delta && scene_.integrator.next_event) sample_lights(vertex);
 
     const std::optional<BsdfSample> s = sample_vertex(vertex);
+    const bool passes = kFeatures.nested && s && s->passes;
+    if (!passes && wants_first_hit()) look_at(vertex);
     if (!s || s->weight.is_zero()) return false;
-    if constexpr (kFeatures.nested) {
-      if (s->passes) return go_straight_on(vertex, *s);
-    }
+    if (passes) return go_straight_on(vertex, *s);
     const Vec3 wi = vertex.frame.to_world(s->wi);
     if (!sides_agree(vertex, wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
         share_ = lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, s->wi, vertex.at));
         has_share_ = true;
+        share_depth_ = depth_;
       }
     }
     beta_ *= s->weight;
@@ -373,9 +421,11 @@ class PathTracer {
   struct AwaitedLight {
     SampledSpectrum radiance;
     LobeShares share;
+    bool is_direct = false;
   };
 
   const Scene& scene_;
+  const AlbedoTables* albedos_;
   Sampler sampler_;
   SampledWavelengths lambda_;
   Ray ray_;
@@ -388,9 +438,11 @@ class PathTracer {
   int depth_ = 0;                // those of them that scattered the path: holes do not count
   SampledSpectrum beta_{1};
   Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
-  std::array<LaneSums, kLayers> sums_{};
-  PathValue<kLayers> value_;
+  std::array<LaneSums, kLayers.size()> sums_{};
+  PathValue<kFeatures> value_;
   bool has_share_ = false;      // a non-delta hit has split the path into lobes
+  int share_depth_ = 0;         // where
+  double length_ = 0;           // of the path from the camera
   LobeShares share_;            // of everything that arrives from behind that hit
   bool last_was_delta_ = true;  // the camera counts as one: no light sample competes
   Float last_pdf_ = 0;

@@ -8,28 +8,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
+#include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/version.h"
-#include "renderer/kernels.h"
 
 namespace spectrace {
 
 namespace {
-
-constexpr int kTileSize = 16;  // pixels: small enough to share the last tiles out, large enough to amortise
-
-std::vector<Tile> make_tiles(int width, int height) {
-  std::vector<Tile> tiles;
-  for (int y = 0; y < height; y += kTileSize) {
-    for (int x = 0; x < width; x += kTileSize) {
-      tiles.push_back({x, y, std::min(x + kTileSize, width), std::min(y + kTileSize, height)});
-    }
-  }
-  return tiles;
-}
 
 const Kernel& kernel_for(const Features& needed, const std::string& name) {
   if (name.empty()) {
@@ -43,108 +28,163 @@ const Kernel& kernel_for(const Features& needed, const std::string& name) {
   throw InternalError(fmt::format("kernel \"{}\" does not exist or does not cover the scene", name));
 }
 
-const char* instruction_set() {
-#if defined(__AVX512F__)
-  return "AVX-512";
-#elif defined(__AVX2__)
-  return "AVX2";
-#elif defined(__SSE4_2__)
-  return "SSE4.2";
-#elif defined(__SSE2__)
-  return "SSE2";
-#else
-  return "scalar";
-#endif
-}
-
-std::string join(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    text += (text.empty() ? "" : "; ") + part;
-  }
-  return text;
+AovSet gathered_aovs(const RenderOptions& options) {
+  AovSet aovs = options.aovs;
+  aovs.halves |= options.relative_error > 0;  // what the error is told from
+  return aovs;
 }
 
 }  // namespace
 
-RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress) {
-  SPECTRACE_CHECK(options.spp >= 1 && options.threads >= 0);
-  const Features needed = required_features(scene, options.layers);
-  const Kernel& kernel = kernel_for(needed, options.kernel);
-  const CropWindow window = scene.film.window();
-  Film film(window.width, window.height, layer_set(needed));
-  const std::vector<Tile> tiles = make_tiles(film.width(), film.height());
-  const SampleRange samples{0, std::uint64_t(options.spp)};
+FilmLayout film_layout(const Scene& scene, const AovSet& aovs) {
+  FilmLayout layout{
+      .layers = layer_set(required_features(scene, aovs)), .aovs = aovs, .bins = {}, .bin_layers = {}};
+  if (const std::optional<SpectralFilmDesc>& spectral = scene.film.spectral) {
+    layout.bins = spectral->bins;
+    layout.bin_layers = kBeautyLayer;
+    if (aovs.lobes && spectral->lobes) {
+      layout.bin_layers = layout.bin_layers | LayerSet(Layer::kDiffuse, Layer::kSpecular);
+    }
+  }
+  return layout;
+}
 
-  const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+Film new_film(const Scene& scene, const RenderOptions& options) {
+  const CropWindow window = scene.film.window();
+  return {window.width, window.height, film_layout(scene, gathered_aovs(options)),
+          SampleRange{options.first, options.first + std::uint64_t(options.spp)}};
+}
+
+RenderSession::RenderSession(const Scene& scene, const RenderOptions& options)
+    : RenderSession(scene, options, new_film(scene, options)) {}
+
+RenderSession::RenderSession(const Scene& scene, const RenderOptions& options, Film film)
+    : scene_(scene),
+      options_(options),
+      needed_(required_features(scene, film.layout().aovs)),
+      kernel_(kernel_for(needed_, options.kernel)),
+      film_(std::move(film)),
+      albedos_(film_.layout().aovs.albedo ? std::make_unique<const AlbedoTables>(scene.materials) : nullptr),
+      job_{.scene = scene,
+           .seed = options.seed,
+           .albedos = albedos_.get(),
+           .kept_slots = film_.layout().kept_slots(),
+           .layout = film_.layout()},
+      threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()) {
+  SPECTRACE_CHECK(options.spp >= 1 && options.threads >= 0);
+  // A pass that was left in its middle is taken up again.
+  const auto [begin, end] = film_.ends();
+  pass_ = {begin, end - begin};
+}
+
+RenderSession::~RenderSession() = default;
+
+/// As many leaves as there are already: so that there is always a whole image, and few passes. Its length
+/// changes no bit.
+LeafRange RenderSession::next_pass(std::uint64_t begin) const {
+  const LeafRange target = film_.target().leaves();
+  std::uint64_t most = std::min(target.end() - begin, std::max<std::uint64_t>(1, begin - target.first));
+  if (options_.seconds > 0 && leaves_rendered_ > 0) {
+    const double affordable = (options_.seconds - seconds_) / (seconds_ / leaves_rendered_);
+    if (affordable < 1) return {begin, 0};
+    most = std::min(most, std::uint64_t(affordable));
+  }
+  return largest_block(begin, most);
+}
+
+bool RenderSession::is_good_enough() const {
+  return options_.relative_error > 0 && film_.relative_error() <= options_.relative_error;
+}
+
+bool RenderSession::advance(Clock::time_point until, const std::atomic<bool>& stop, Progress& progress) {
+  const LeafRange target = film_.target().leaves();
+  while (!is_done_) {
+    if (pass_.count == 0) {
+      const bool has_some = pass_.first > target.first;
+      const bool goes_on = pass_.first < target.end() && !(has_some && is_good_enough());
+      if (goes_on) pass_ = next_pass(pass_.first);
+      is_done_ = pass_.count == 0;
+    } else if (render_pass(until, stop, progress)) {
+      pass_ = {pass_.end(), 0};
+    } else {
+      break;
+    }
+  }
+  return is_done_;
+}
+
+/// False: there are tiles left to do.
+bool RenderSession::render_pass(Clock::time_point until, const std::atomic<bool>& stop, Progress& progress) {
+  const auto start = Clock::now();
+  std::vector<std::size_t> left;
+  for (std::size_t tile = 0; tile < film_.tiles().size(); ++tile) {
+    if (film_.end(tile) < pass_.end()) left.push_back(tile);
+  }
+  film_.reserve(pass_.end());
+  const LeafRange target = film_.target().leaves();
+  const SampleRange samples{pass_.first * kLeafSamples,
+                            std::min(pass_.end() * kLeafSamples, film_.target().last)};
   // More threads than cores are a user's to ask for; the arena alone would not make them.
   const tbb::global_control limit(
       tbb::global_control::max_allowed_parallelism,
-      std::max(std::size_t(threads),
+      std::max(std::size_t(threads_),
                tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
-  tbb::task_arena arena(threads);
-  std::atomic<std::size_t> done{0};
-  std::atomic<std::uint64_t> rays{0}, measured{0}, extrapolated{0};
-  const auto start = std::chrono::steady_clock::now();
+  tbb::task_arena arena(threads_);
+  const auto tiles = double(film_.tiles().size());
+  std::atomic<std::size_t> done{film_.tiles().size() - left.size()}, rendered{0};
+  const auto render_one = [&](std::size_t tile) {
+    thread_local TileSums sums;
+    const TileCounts counts = kernel_.render_tile(job_, samples, film_.tiles()[tile], sums, nullptr);
+    film_.add(tile, pass_, sums);
+    rays_ += counts.rays;
+    measured_ += counts.measured;
+    extrapolated_ += counts.extrapolated;
+    ++rendered;
+    const double leaves = double(pass_.first - target.first) + double(pass_.count) * double(++done) / tiles;
+    progress.update("rendering", leaves, double(target.count));
+  };
   arena.execute([&] {
     tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+        tbb::blocked_range<std::size_t>(0, left.size(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const TileCounts of_tile =
-                kernel.render_tile(scene, options.seed, samples, tiles[i], film, nullptr);
-            rays += of_tile.rays;
-            measured += of_tile.measured;
-            extrapolated += of_tile.extrapolated;
-            progress.update("rendering", double(++done), double(tiles.size()));
+            if (stop.load(std::memory_order_relaxed) || Clock::now() >= until) return;
+            render_one(left[i]);
           }
         },
         tbb::simple_partitioner());
   });
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-
-  EffectList effects = list_effects(needed, kernel.features);
-  RenderResult result;
-  result.image = film.resolve();
-  result.report = {
-      .kernel = std::string(kernel.name),
-      .effects_used = std::move(effects.used),
-      .effects_skipped = std::move(effects.skipped),
-      .paths = std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(options.spp),
-      .rays = rays,
-      .invalid_samples = film.invalid_samples(),
-      .extrapolated_share = measured > 0 ? double(extrapolated) / double(measured) : 0,
-      .seconds = elapsed.count(),
-      .threads = threads};
-  return result;
+  seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
+  leaves_rendered_ += double(pass_.count) * double(rendered) / tiles;
+  return done == film_.tiles().size();
 }
 
-Metadata provenance(const Scene& scene, const RenderOptions& options, const RenderReport& report) {
-  const WavelengthRange range = scene.wavelengths.range();
-  return {
-      {"spectrace:version", std::string(version())},
-      {"spectrace:commit", std::string(commit())},
-      {"spectrace:sceneFile", scene.file_name},
-      {"spectrace:sceneSha256", scene.sha256},
-      {"spectrace:materialSha256s", join(scene.material_sha256s)},
-      {"spectrace:cropWindow", fmt::format("{} {} {} {} of {} x {}", scene.film.window().x,
-                                           scene.film.window().y, scene.film.window().width,
-                                           scene.film.window().height, scene.film.width, scene.film.height)},
-      {"spectrace:seed", std::to_string(options.seed)},  // text: 64 unsigned bits fit no other attribute
-      {"spectrace:spp", std::int64_t(options.spp)},
-      {"spectrace:sampleRange", fmt::format("0:{}", options.spp)},
-      {"spectrace:seconds", report.seconds},
-      {"spectrace:threads", std::int64_t(report.threads)},
-      {"spectrace:isa", std::string(instruction_set())},
-      {"spectrace:lambdaMinNm", double(range.min_nm)},
-      {"spectrace:lambdaMaxNm", double(range.max_nm)},
-      {"spectrace:units", std::string("linear sRGB of W.m^-2.sr^-1.nm^-1 weighted by CIE 1931 / 106.857 nm")},
-      {"spectrace:kernel", report.kernel},
-      {"spectrace:effectsUsed", join(report.effects_used)},
-      {"spectrace:effectsSkipped", join(report.effects_skipped)},
-      {"spectrace:invalidSamples", std::int64_t(report.invalid_samples)},
-      {"spectrace:extrapolatedShare", report.extrapolated_share},
-  };
+void RenderSession::finish(Progress& progress) {
+  const std::atomic<bool> never{false};
+  SPECTRACE_CHECK(advance(Clock::time_point::max(), never, progress));
+}
+
+RenderReport RenderSession::report() const {
+  EffectList effects = list_effects(needed_, kernel_.features);
+  const SampleRange target = film_.target();
+  const double pixels = double(film_.width()) * double(film_.height());
+  return {.kernel = std::string(kernel_.name),
+          .effects_used = std::move(effects.used),
+          .effects_skipped = std::move(effects.skipped),
+          .samples = {target.first, std::min(film_.ends().first * kLeafSamples, target.last)},
+          .paths = std::uint64_t(std::llround(
+              std::min(leaves_rendered_ * double(kLeafSamples), double(target.count())) * pixels)),
+          .rays = rays_,
+          .invalid_samples = film_.invalid_samples(),
+          .extrapolated_share = measured_ > 0 ? double(extrapolated_) / double(measured_) : 0,
+          .seconds = seconds_,
+          .threads = threads_};
+}
+
+RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress) {
+  RenderSession session(scene, options);
+  session.finish(progress);
+  return {session.film().resolve(), session.report()};
 }
 
 }  // namespace spectrace

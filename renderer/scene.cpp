@@ -141,6 +141,13 @@ DistantLights build_lights(const SceneDesc& scene, Progress& progress) {
   return result;
 }
 
+/// Every wavelength of a spectral image is worth as much as any other.
+WavelengthDistribution evenly(const SceneDesc& scene) {
+  const std::optional<SpectralFilmDesc>& spectral = scene.film.spectral;
+  if (!spectral || !spectral->bins.at_centers) return WavelengthDistribution::uniform(scene.range);
+  return WavelengthDistribution::at_centers(scene.range, spectral->bins.count);
+}
+
 }  // namespace
 
 Scene build_scene(const SceneDesc& description, Progress& progress) {
@@ -165,9 +172,9 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
       std::any_of(materials.begin(), materials.end(), [](const Material& m) { return has_images(m); });
   DistantLights distant = build_lights(description, progress);
   Accel accel(shapes.geometry);
-  const auto uniform = WavelengthDistribution::uniform(description.range);
-  const auto observer =
-      description.visible_sampling ? WavelengthDistribution::visible(description.range) : uniform;
+  const bool visible = description.visible_sampling && !description.film.spectral;
+  const auto observer = visible ? WavelengthDistribution::visible(description.range)
+                                : WavelengthDistribution::uniform(description.range);
   Lights lights(std::move(shapes.area_lights), shapes.light_groups, std::move(shapes.emissions),
                 std::move(distant.delta), std::move(distant.environment), observer,
                 bounds(shapes.geometry).radius());
@@ -175,14 +182,14 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   return Scene{.file_name = description.file_name,
                .sha256 = description.sha256,
                .material_sha256s = std::move(digests),
-               .wavelengths = description.visible_sampling
-                                  ? WavelengthDistribution::visible(description.range, power)
-                                  : uniform,
+               .wavelengths =
+                   visible ? WavelengthDistribution::visible(description.range, power) : evenly(description),
                .camera = Camera(description.camera, description.film),
                .film = description.film,
                .integrator = description.integrator,
                .spp = description.spp,
                .seed = description.seed,
+               .aovs = description.aovs,
                .materials = std::move(materials),
                .last_measured_cosine = std::move(measured_cosines),
                .has_images = images,

@@ -26,6 +26,7 @@ struct Scene {
   IntegratorDesc integrator;
   int spp = 64;            ///< what the file asks for
   std::uint64_t seed = 0;  ///< likewise
+  AovSet aovs;             ///< likewise
   std::vector<Material> materials;
   /// By material: seen from below this cosine a measured BRDF was not measured but extrapolated (hard case
   /// H1); 0 for others, which are never seen from there.

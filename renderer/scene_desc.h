@@ -14,6 +14,8 @@
 #include "core/math/vec.h"
 #include "core/spectra/spectrum.h"
 #include "materials/material.h"
+#include "renderer/aovs.h"
+#include "renderer/spectral_bins.h"
 
 namespace spectrace {
 
@@ -33,8 +35,15 @@ struct CropWindow {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
+/// Spectral images beside the RGB one.
+struct SpectralFilmDesc {
+  SpectralBins bins;
+  bool lobes = true;  ///< of the diffuse and the specular lobe too
+};
+
 struct FilmDesc {
   int width = 512, height = 512;
+  std::optional<SpectralFilmDesc> spectral{};
   std::optional<CropWindow> crop{};  ///< within the image: what is rendered of it
 
   [[nodiscard]] CropWindow window() const { return crop.value_or(CropWindow{0, 0, width, height}); }
@@ -116,6 +125,7 @@ struct SceneDesc {
   IntegratorDesc integrator;
   int spp = 64;
   std::uint64_t seed = 0;
+  AovSet aovs = kLobeAovs;
   std::vector<MaterialDesc> materials;
   std::vector<GroupDesc> groups;
   std::vector<ShapeDesc> shapes;

@@ -16,13 +16,8 @@
 namespace spectrace {
 namespace {
 
-constexpr std::int64_t kMaxSide = 65536;
-// What read_image() accepts by default: a larger image could be written but not compared.
-constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
 constexpr std::int64_t kMaxDepth = 65536;
 constexpr std::int64_t kMaxSpp = std::numeric_limits<std::int32_t>::max();
-// Any light that a lens or a grating would be built for; the observer sees 360 to 830 nm of it.
-constexpr NumberRange kWavelengths{.min = 100, .max = 10000};
 constexpr double kVisibleMin_nm = 360, kVisibleMax_nm = 830;
 // Below this sine of the angle between view and up, single precision leaves too few digits for a frame.
 constexpr double kMinUpSine = 1e-4;
@@ -35,7 +30,7 @@ void parse_spectrum_section(const JsonValue& json, SceneDesc& scene) {
       scene.range = {static_cast<Float>(ends[0]), static_cast<Float>(ends[1])};
       if (!(ends[1] - ends[0] >= 1)) {
         range.error("expected [min, max] at least 1 nm apart, min first");
-      } else if (ends[0] >= kVisibleMax_nm || ends[1] <= kVisibleMin_nm) {
+      } else if (!scene.film.spectral && (ends[0] >= kVisibleMax_nm || ends[1] <= kVisibleMin_nm)) {
         range.error(fmt::format("nothing of [{}, {}] nm is visible (360 to 830 nm): the image would be black",
                                 ends[0], ends[1]));
       }
@@ -72,33 +67,6 @@ void parse_camera(const JsonValue& json, CameraDesc& camera) {
     target.error("is the same point as the origin: the camera has nowhere to look");
   } else if (length(cross(normalize(view), normalize(camera.up))) < kMinUpSine) {
     (up.exists() ? up : json).error("\"up\" is parallel to the direction from origin to target");
-  }
-}
-
-/// [x, y, width, height] in pixels of the image.
-std::optional<CropWindow> parse_crop(const JsonValue& json, const FilmDesc& film) {
-  const std::vector<JsonValue> parts = json.elements();
-  if (parts.size() != 4) {
-    json.error("expected [x, y, width, height] in pixels of the image");
-    return std::nullopt;
-  }
-  const auto part = [&](std::size_t i, std::int64_t fallback, std::int64_t min, std::int64_t max) {
-    return static_cast<int>(parts[i].integer(fallback, min, max));
-  };
-  CropWindow crop{.x = part(0, 0, 0, film.width - 1), .y = part(1, 0, 0, film.height - 1)};
-  crop.width = part(2, 1, 1, film.width - crop.x);
-  crop.height = part(3, 1, 1, film.height - crop.y);
-  return crop;
-}
-
-void parse_film(const JsonValue& json, FilmDesc& film) {
-  const std::int64_t width = json.get("width").integer(film.width, 1, kMaxSide);
-  const std::int64_t height = json.get("height").integer(film.height, 1, kMaxSide);
-  film = {static_cast<int>(width), static_cast<int>(height)};
-  if (const JsonValue crop = json.get("crop"); crop.exists()) film.crop = parse_crop(crop, film);
-  json.reject_unknown_keys();
-  if (width * height > kMaxPixels) {
-    json.error(fmt::format("{} x {} pixels: more than {}", width, height, kMaxPixels));
   }
 }
 
@@ -207,9 +175,11 @@ SceneDesc parse_scene(const std::string& text, const std::filesystem::path& file
   const JsonValue root = document.root();
   SceneNames names;
   if (root.is_object()) {
-    parse_spectrum_section(root.get("spectrum"), scene);
-    parse_camera(root.require("camera"), scene.camera);
     parse_film(root.get("film"), scene.film);
+    parse_spectrum_section(root.get("spectrum"), scene);
+    parse_spectral_film(root.get("film").get("spectral"), scene);
+    parse_aovs(root.get("aovs"), scene);
+    parse_camera(root.require("camera"), scene.camera);
     parse_sampler(root.get("sampler"), scene);
     parse_integrator(root.get("integrator"), scene.integrator);
     parse_materials(root.get("materials"), scene, names);

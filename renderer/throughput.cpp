@@ -27,9 +27,14 @@ struct Logged {
 };
 
 /// Tiles spread over the picture until there are enough packets.
-Logged log_rays(const Scene& scene, const Kernel& kernel, std::uint64_t samples) {
+Logged log_rays(const Scene& scene, const Kernel& kernel, const AovSet& aovs, std::uint64_t samples) {
   const CropWindow window = scene.film.window();
-  Film film(window.width, window.height, layer_set(kernel.features));
+  const RenderJob job{.scene = scene,
+                      .seed = 0,
+                      .albedos = nullptr,
+                      .kept_slots = film_layout(scene, aovs).kept_slots(),
+                      .layout = film_layout(scene, aovs)};
+  TileSums sums;
   std::vector<Tile> tiles;
   for (int y = 0; y < window.height; y += kLogTile) {
     for (int x = 0; x < window.width; x += kLogTile) {
@@ -41,7 +46,7 @@ Logged log_rays(const Scene& scene, const Kernel& kernel, std::uint64_t samples)
   const auto step = std::size_t(double(tiles.size()) * 0.618033988749895) | 1U;
   for (std::size_t i = 0; i < tiles.size() && logged.packets.size() < kLoggedPackets; ++i) {
     const Tile& tile = tiles[i * step % tiles.size()];
-    logged.rays += kernel.render_tile(scene, 0, {0, samples}, tile, film, &logged.packets).rays;
+    logged.rays += kernel.render_tile(job, {0, samples}, tile, sums, &logged.packets).rays;
     logged.paths += std::uint64_t(tile.x1 - tile.x0) * std::uint64_t(tile.y1 - tile.y0) * samples;
   }
   return logged;
@@ -106,23 +111,25 @@ double Throughput::raw_rays_per_second() const {
 }
 
 Throughput measure_throughput(const Scene& scene, const ThroughputOptions& options, Progress& progress) {
-  RenderOptions render_options{.spp = options.spp, .threads = 1, .layers = options.layers};
-  const RenderResult one = render(scene, render_options, progress);
+  RenderOptions render_options{.spp = options.spp, .threads = 1, .aovs = options.aovs};
+  RenderSession session(scene, render_options);
+  session.finish(progress);
+  const RenderReport one = session.report();
   render_options.threads = options.threads;
-  const RenderResult many = render(scene, render_options, progress);
-  Throughput result{.kernel = one.report.kernel,
-                    .paths = one.report.paths,
-                    .rays = one.report.rays,
+  const RenderReport many = render(scene, render_options, progress).report;
+  Throughput result{.kernel = one.kernel,
+                    .paths = one.paths,
+                    .rays = one.rays,
                     .triangles = triangles_of(scene),
-                    .seconds = one.report.seconds,
-                    .threads = many.report.threads,
-                    .seconds_of_threads = many.report.seconds,
+                    .seconds = one.seconds,
+                    .threads = many.threads,
+                    .seconds_of_threads = many.seconds,
                     .peak_memory_bytes = peak_memory_bytes()};  // the log of rays is not a render's
 
   const FlushDenormals flush;
-  const Kernel& kernel = choose_kernel(required_features(scene, options.layers));
-  const Logged logged =
-      log_rays(scene, kernel, std::min<std::uint64_t>(kLogSamples, std::uint64_t(options.spp)));
+  const Kernel& kernel = choose_kernel(required_features(scene, options.aovs));
+  const std::uint64_t log_samples = std::bit_floor(std::min(kLogSamples, std::uint64_t(options.spp)));
+  const Logged logged = log_rays(scene, kernel, options.aovs, log_samples);
   volatile double sink = 0;  // what is computed must be computed
   const auto seconds = [&](const auto& work) { return seconds_of([&] { sink = double(work()); }); };
   const double packets = seconds([&] { return trace_packets(scene.accel, logged.packets); });
@@ -134,8 +141,7 @@ Throughput measure_throughput(const Scene& scene, const ThroughputOptions& optio
   result.traversal = of_all(packets, logged.rays, result.rays);
   result.sampling = of_all(numbers, logged.paths, result.paths);
   result.single_rays_per_second = singles > 0 ? double(logged.rays) / singles : 0;
-  const Film film(one.image.width, one.image.height, layer_set(kernel.features));
-  result.film = seconds([&] { return film.resolve().data.size(); });
+  result.film = seconds([&] { return session.film().resolve().data.size(); });
   return result;
 }
 

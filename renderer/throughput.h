@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/progress.h"
+#include "renderer/aovs.h"
 #include "renderer/scene.h"
 
 namespace spectrace {
@@ -14,7 +15,7 @@ namespace spectrace {
 struct ThroughputOptions {
   int spp = 64;     ///< samples a pixel, at least 1
   int threads = 0;  ///< of the second render; 0 = all cores
-  bool layers = false;
+  AovSet aovs;
 };
 
 /// Seconds of one thread unless said otherwise.

@@ -8,6 +8,31 @@
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define SPECTRACE_WIDE __attribute__((target_clones("default", "avx2")))
+#define SPECTRACE_HAS_WIDE 1
 #else
 #define SPECTRACE_WIDE
 #endif
+
+namespace spectrace {
+
+/// What those loops run with here: "AVX2", ...
+inline const char* instruction_set() {
+#ifdef SPECTRACE_HAS_WIDE
+  if (__builtin_cpu_supports("avx2")) return "AVX2";
+#endif
+#if defined(__AVX512F__)
+  return "AVX-512";
+#elif defined(__AVX2__)
+  return "AVX2";
+#elif defined(__SSE4_2__)
+  return "SSE4.2";
+#elif defined(__SSE2__)
+  return "SSE2";
+#elif defined(__ARM_NEON)
+  return "NEON";
+#else
+  return "scalar";
+#endif
+}
+
+}  // namespace spectrace

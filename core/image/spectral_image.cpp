@@ -108,6 +108,12 @@ std::vector<SpectralChannel> find_spectral_channels(std::span<const std::string>
   return found;
 }
 
+std::string spectral_channel_name(SpectralKind kind, double lambda_nm) {
+  std::string digits = fmt::format("{:.6f}", lambda_nm);  // whatever the locale: with a point
+  std::replace(digits.begin(), digits.end(), '.', ',');
+  return fmt::format("{}{}nm", prefix_of(kind), digits);
+}
+
 std::optional<SpectralImage> spectral_channels(const Image& image, SpectralKind kind,
                                                const std::string& file) {
   const std::vector<SpectralChannel> found = find_spectral_channels(image.channels, kind, file);

@@ -61,6 +61,8 @@ struct SpectralChannel {
 /// where a name or a wavelength is wrong.
 [[nodiscard]] std::vector<SpectralChannel> find_spectral_channels(std::span<const std::string> channels,
                                                                   SpectralKind kind, const std::string& file);
+/// "S0.550,000000nm".
+[[nodiscard]] std::string spectral_channel_name(SpectralKind kind, double lambda_nm);
 /// The same with their values; nothing where the image has none.
 [[nodiscard]] std::optional<SpectralImage> spectral_channels(const Image& image, SpectralKind kind,
                                                              const std::string& file);

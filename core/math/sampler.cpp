@@ -6,7 +6,6 @@
 
 #include "core/base/wide.h"
 #include "core/math/sobol.h"
-#include "core/spectra/sampled_spectrum.h"
 
 namespace spectrace {
 namespace {
@@ -131,6 +130,14 @@ PathNumbers Sampler::path() const {
   return {.wavelength = to_unit(wavelength_bits(x[kWavelength], x[kHero])),
           .pixel = {to_unit(x[kPixelX]), to_unit(x[kPixelY])},
           .lens = {to_unit(x[kLensX]), to_unit(x[kLensY])}};
+}
+
+std::array<Float, kLanes> Sampler::lane_shifts() const {
+  std::array<Float, kLanes> shifts{};
+  for (std::size_t lane = 1; lane < kLanes; ++lane) {
+    shifts[lane] = to_unit(std::uint32_t(hash(~key_, lane) >> 32));
+  }
+  return shifts;
 }
 
 VertexNumbers Sampler::vertex(std::uint32_t vertex) const {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "core/math/vec.h"
+#include "core/spectra/sampled_spectrum.h"
 
 namespace spectrace {
 
@@ -44,6 +45,9 @@ class Sampler {
 
   /// Which of the pixel's samples, but for the blocks of 2^32.
   [[nodiscard]] std::uint32_t sample() const { return sample_; }
+  /// One number in [0, 1) a lane, the same for all samples of the pixel; the first is 0: what keeps the lanes
+  /// of a spectral image apart (WavelengthDistribution::sample).
+  [[nodiscard]] std::array<Float, kLanes> lane_shifts() const;
 
   /// Numbers come in blocks of as many as a register of 256 bits holds.
   static constexpr int kBlock = 8;

@@ -64,6 +64,18 @@ WavelengthDistribution WavelengthDistribution::uniform(WavelengthRange range) {
   return {range, {1.0, 1.0}};
 }
 
+WavelengthDistribution WavelengthDistribution::at_centers(WavelengthRange range, std::size_t count) {
+  SPECTRACE_CHECK(std::isfinite(range.width_nm()) && range.width_nm() > 0 && count > 0);
+  const double width_nm = double(range.width_nm()) / double(count);
+  std::vector<Cell> cells(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    cells[i] = {.begin_nm = static_cast<Float>(double(range.min_nm) + (double(i) + 0.5) * width_nm),
+                .width_nm = 0,
+                .pdf_per_nm = 1 / range.width_nm()};
+  }
+  return {range, std::move(cells)};
+}
+
 WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
                                                        const std::function<double(double)>& emission) {
   SPECTRACE_CHECK(std::isfinite(range.width_nm()) && range.width_nm() > 0);
@@ -90,16 +102,38 @@ WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
 }
 
 SPECTRACE_WIDE SampledWavelengths WavelengthDistribution::sample(Float u) const {
-  std::array<Float, kLanes> lambda_nm{}, pdf_per_nm_of_lane{};
-  Float *const nm = lambda_nm.data(), *const pdf = pdf_per_nm_of_lane.data();
-  const Cell* const cells = cells_.data();
+  std::array<Float, kLanes> position{};
   for (int lane = 0; lane < kLanes; ++lane) {
     // Rotated in the unit interval, so that each lane on its own has this density: Wilkie et al. 2014,
     // sec. 3.
     const Float rotated = u + Float(lane) / kLanes;
-    const Float position = (rotated < 1 ? rotated : rotated - 1) * Float(kCells);
-    const auto k = static_cast<std::int32_t>(position);
-    nm[lane] = cells[k].begin_nm + (position - Float(k)) * cells[k].width_nm;
+    position[lane] = rotated < 1 ? rotated : rotated - 1;
+  }
+  return at(position);
+}
+
+SampledWavelengths WavelengthDistribution::sample(Float u, const std::array<Float, kLanes>& shifts) const {
+  const auto stratum = static_cast<int>(u * kLanes);
+  const Float within = u * kLanes - Float(stratum);
+  std::array<Float, kLanes> position{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Float moved = within + shifts[lane];
+    position[lane] = (Float((stratum + lane) % kLanes) + (moved < 1 ? moved : moved - 1)) / kLanes;
+  }
+  return at(position);
+}
+
+SPECTRACE_WIDE SampledWavelengths
+WavelengthDistribution::at(const std::array<Float, kLanes>& position) const {
+  std::array<Float, kLanes> lambda_nm{}, pdf_per_nm_of_lane{};
+  Float *const nm = lambda_nm.data(), *const pdf = pdf_per_nm_of_lane.data();
+  const Cell* const cells = cells_.data();
+  const auto count = static_cast<std::int32_t>(cells_.size());
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Float place = position[lane] * Float(count);
+    // The product may round up to the number of cells.
+    const std::int32_t k = std::min(static_cast<std::int32_t>(place), count - 1);
+    nm[lane] = cells[k].begin_nm + (place - Float(k)) * cells[k].width_nm;
     pdf[lane] = cells[k].pdf_per_nm;
   }
   return {lambda_nm, pdf_per_nm_of_lane};

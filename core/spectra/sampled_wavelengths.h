@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/spectra/sampled_spectrum.h"
@@ -50,11 +52,14 @@ class SampledWavelengths {
 };
 
 /// Density over a range from which the hero and, by rotation in the unit interval, the other lanes are
-/// drawn: constant over each of 1024 cells of equal probability. Immutable; shared by threads.
+/// drawn: constant over each of its cells, which are equally likely. Immutable; shared by threads.
 class WavelengthDistribution {
  public:
   /// Constant density: 1 / width.
   static WavelengthDistribution uniform(WavelengthRange range);
+  /// Constant density over `count` cells, each of which is met at its centre only: for images that hold the
+  /// spectrum at given wavelengths rather than means over bins.
+  static WavelengthDistribution at_centers(WavelengthRange range, std::size_t count);
   /// What a pixel sees of each wavelength, the length of its linear sRGB vector, times what is there to be
   /// seen: a path's squared error is least where its density follows the colour it brings. `emission`: of all
   /// lights at a wavelength [nm], >= 0, any unit; empty: as much everywhere. A fifth of the density knows
@@ -65,6 +70,10 @@ class WavelengthDistribution {
 
   /// `u` in [0, 1).
   [[nodiscard]] SampledWavelengths sample(Float u) const;
+  /// The same with each lane moved on by its share `shifts` in [0, 1) of its kLanes-th of the range, round
+  /// within it. At equal distances lanes share what is uneven in the `u` of a pixel, and a spectrum of many
+  /// bins shows it kLanes times over; shifts that differ between pixels and lanes leave no such pattern.
+  [[nodiscard]] SampledWavelengths sample(Float u, const std::array<Float, kLanes>& shifts) const;
   /// [1/nm]; 0 outside the range.
   [[nodiscard]] Float pdf_per_nm(Float lambda_nm) const;
   [[nodiscard]] WavelengthRange range() const { return range_; }
@@ -78,6 +87,12 @@ class WavelengthDistribution {
   struct Cell {
     Float begin_nm = 0, width_nm = 0, pdf_per_nm = 0;
   };
+  /// At places in [0, 1) of the cumulative density.
+  [[nodiscard]] SampledWavelengths at(const std::array<Float, kLanes>& position) const;
+
+  WavelengthDistribution(WavelengthRange range, std::vector<Cell> cells)
+      : range_(range), cells_(std::move(cells)) {}
+
   WavelengthRange range_;
   std::vector<Cell> cells_;
 };

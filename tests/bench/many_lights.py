@@ -70,7 +70,7 @@ def scene(lights, resolution, spp):
 
 def render(spectrace, file, output, spp, seed):
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    subprocess.run([spectrace, file, "-o", output, "--spp", str(spp), "--seed", str(seed), "--beauty-only"], check=True,
+    subprocess.run([spectrace, file, "-o", output, "--spp", str(spp), "--seed", str(seed), "--aovs", "none"], check=True,
                    capture_output=True)
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 

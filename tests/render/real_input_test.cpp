@@ -50,7 +50,7 @@ class RealBall {
     scene_->materials[0] =
         PairedBrdf(std::move(values), SeparatedBrdf(tables_, SeparationModel::kDiffraction));
     SilentProgress progress;
-    const RenderResult result = render(*scene_, {.spp = 32, .layers = false}, progress);
+    const RenderResult result = render(*scene_, {.spp = 32, .aovs = kNoAovs}, progress);
     EXPECT_EQ(result.report.invalid_samples, 0U);
     const auto names = rgb_channels("");
     Image rgb = result.image.select(names, "rendered");

@@ -7,8 +7,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <sstream>
 #include <system_error>
+#include <thread>
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX asks the user to declare it
 
@@ -51,7 +54,8 @@ std::vector<std::string> ProgramResult::error_lines() const {
 }
 
 ProgramResult run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                          const std::filesystem::path& folder, const std::filesystem::path& output_to) {
+                          const std::filesystem::path& folder, const std::filesystem::path& output_to,
+                          DelayedSignal signal) {
   const TemporaryFolder streams;
   const std::filesystem::path out = output_to.empty() ? streams / "out" : output_to;
   FileActions actions;
@@ -68,6 +72,10 @@ ProgramResult run_program(const std::filesystem::path& program, const std::vecto
 
   pid_t child = 0;
   check(posix_spawn(&child, program.c_str(), actions.get(), nullptr, argv.data(), environ), "posix_spawn");
+  if (signal.signal != 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(signal.after_ms));
+    kill(child, signal.signal);  // it may have ended: until it is waited for, its number is no one else's
+  }
   int status = 0;
   while (waitpid(child, &status, 0) == -1) {
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");

@@ -21,12 +21,18 @@ struct ProgramResult {
   [[nodiscard]] std::vector<std::string> error_lines() const;
 };
 
+/// Sent to a program once it has run for a while; 0: none.
+struct DelayedSignal {
+  int signal = 0;
+  int after_ms = 0;
+};
+
 /// Each argument reaches the program as it is; standard input is empty. `folder`, where given, is where it
 /// runs; `output_to` receives standard output instead of the result. Throws std::system_error where the
 /// program cannot be started.
 ProgramResult run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                           const std::filesystem::path& folder = {},
-                          const std::filesystem::path& output_to = {});
+                          const std::filesystem::path& output_to = {}, DelayedSignal signal = {});
 
 inline ProgramResult run_spectrace(const std::vector<std::string>& arguments,
                                    const std::filesystem::path& folder = {}) {

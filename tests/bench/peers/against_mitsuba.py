@@ -167,7 +167,7 @@ def render_mitsuba(scene, spp, seed):
 
 def render_spectrace(program, scene, folder, spp, seed):
     out = folder / "picture.exr"
-    done = subprocess.run([program, scene, "-o", out, "--spp", str(spp), "--seed", str(seed), "--beauty-only"],
+    done = subprocess.run([program, scene, "-o", out, "--spp", str(spp), "--seed", str(seed), "--aovs", "none"],
                           check=True, capture_output=True, text=True)
     seconds = float(re.search(r"a pixel, ([0-9.]+) s on", done.stdout + done.stderr).group(1))
     bitmap = mitsuba.Bitmap(str(out))

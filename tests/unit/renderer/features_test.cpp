@@ -14,7 +14,7 @@ Features features_of(const std::string& name) {
   for (const NamedScene& entry : scene_zoo()) {
     if (entry.name == name) {
       SilentProgress progress;
-      return required_features(build_scene(entry.scene, progress), true);
+      return required_features(build_scene(entry.scene, progress), kLobeAovs);
     }
   }
   ADD_FAILURE() << "no scene " << name;
@@ -44,7 +44,7 @@ TEST(Features, MaterialsNoShapeUsesCallForNothing) {
   SceneDesc scene = empty_scene();
   scene.materials = {{.name = "glass", .where = "", .kind = Dielectric{}}};
   SilentProgress progress;
-  EXPECT_FALSE(required_features(build_scene(scene, progress), true).delta_lobes);
+  EXPECT_FALSE(required_features(build_scene(scene, progress), kLobeAovs).delta_lobes);
 }
 
 TEST(Kernels, RunFromLeanToFullAndEachIsChosenForItself) {

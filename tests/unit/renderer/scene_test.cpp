@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "renderer/provenance.h"
 #include "renderer/scene.h"
 
 #include <gtest/gtest.h>

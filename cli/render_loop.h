@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// A render under way: checkpoints, pictures to look at, and an end when a signal asks for it.
+#pragma once
+
+#include <functional>
+
+#include "core/base/progress.h"
+#include "renderer/render.h"
+
+namespace spectrace::cli {
+
+/// Something to be done from time to time.
+struct Recurring {
+  double every_seconds = 0;
+  std::function<void()> action;
+};
+
+/// Renders until all is done or SIGINT or SIGTERM comes; a second signal ends the program at once. True:
+/// done.
+bool run(RenderSession& session, const std::vector<Recurring>& tasks, Progress& progress);
+
+}  // namespace spectrace::cli

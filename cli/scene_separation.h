@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Separating the measured materials of a scene before it is rendered.
+#pragma once
+
+#include <string>
+
+#include "core/base/progress.h"
+#include "materials/half_difference_grid.h"
+#include "renderer/scene_desc.h"
+#include "separation/choose_model.h"
+
+namespace spectrace::cli {
+
+struct SceneSeparation {
+  std::string model;  ///< a model's name, "auto", or empty: none
+  double tolerance = kDefaultTolerance;
+  HalfDifferenceGrid grid;
+  bool paired = false;
+  std::string cache;  ///< folder; empty: the user's
+  int threads = 0;
+
+  [[nodiscard]] bool is_asked() const { return !model.empty() || paired; }
+};
+
+/// Every measured material becomes its separated form, or with `paired` alone draws its directions. False,
+/// with the reason noted, where one cannot.
+bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Progress& progress);
+
+}  // namespace spectrace::cli

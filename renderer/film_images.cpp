@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// The images that a film's sums make.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/image/spectral_image.h"
+#include "core/spectra/color.h"
+#include "renderer/film.h"
+
+namespace spectrace {
+
+namespace {
+
+constexpr std::array<const char*, 3> kRgb{"R", "G", "B"}, kXyzNames{"X", "Y", "Z"};
+
+/// Darker pixels than this share of the mean are not held to their own brightness.
+constexpr double kErrorFloor = 0.01;
+
+/// One pixel's sums, and how many samples they are of.
+struct PixelTotal {
+  std::array<double, slots::kCount> v{};
+  double valid = 0, valid_b = 0;
+
+  [[nodiscard]] Xyz three(std::size_t slot) const { return {v[slot], v[slot + 1], v[slot + 2]}; }
+};
+
+double over(double sum, double count) { return count > 0 ? sum / count : 0; }
+
+Rgb mean_rgb(const Xyz& sum, double count) {
+  return xyz_to_rgb({over(sum[0], count), over(sum[1], count), over(sum[2], count)});
+}
+
+/// Of the mean: Σ(x - x̄)² / (n (n - 1)); 0 where one sample tells nothing of it.
+double variance_of_mean(double sum, double sum_of_squares, double n) {
+  if (n < 2) return 0;
+  return std::max(0.0, sum_of_squares - sum * sum / n) / (n * (n - 1));
+}
+
+/// Names the channels of a pixel, or fills them: the same walk for both, so that they cannot part.
+class ChannelWalk {
+ public:
+  ChannelWalk(const FilmLayout& layout, std::vector<std::string>& names) : layout_(layout), names_(&names) {}
+  ChannelWalk(const FilmLayout& layout, const PixelTotal& total, float* out)
+      : layout_(layout), total_(&total), out_(out) {}
+
+  void walk() {
+    layout_.layers.for_each([&](Layer layer) { add_layer(layer); });
+    if (layout_.aovs.direct) add_indirect();
+    const std::size_t moments = layout_.aovs.lobes ? kMomentLayers : 1;
+    for (std::size_t m = 0; m < moments; ++m) add_moments(m);
+    for (const Feature feature : kFeatureList) {
+      if (layout_.aovs.has(feature)) add_feature(feature);
+    }
+    const AovSet& aovs = layout_.aovs;
+    if (aovs.samples) add("samples.Z", [&] { return total_->valid; });
+    add("diagnostics.invalid", [&] { return total_->v[slots::kInvalid]; });
+    if (aovs.extrapolated) {
+      add("diagnostics.extrapolated", [&] { return total_->v[slots::kExtrapolated]; });
+    }
+  }
+
+ private:
+  template <typename Value>
+  void add(const std::string& name, const Value& value) {
+    if (names_ != nullptr) {
+      names_->push_back(name);
+    } else {
+      *out_++ = float(value());
+    }
+  }
+  template <typename Value>
+  void add_rgb(const std::string& prefix, const Value& value) {
+    const Rgb rgb = names_ != nullptr ? Rgb{} : value();
+    for (std::size_t c = 0; c < 3; ++c) add(prefix + kRgb[c], [&] { return rgb[c]; });
+  }
+  static std::string prefix(std::string_view layer) {
+    std::string text(layer);
+    if (!text.empty()) text += '.';
+    return text;
+  }
+
+  void add_layer(Layer layer) {
+    add_rgb(prefix(layer_name(layer)),
+            [&] { return mean_rgb(total_->three(slots::xyz(layer)), total_->valid); });
+  }
+  /// What is not direct.
+  void add_indirect() {
+    const auto rest = [&](Layer all, Layer direct) {
+      return [&, all, direct] {
+        Xyz sum = total_->three(slots::xyz(all));
+        const Xyz of_it = total_->three(slots::xyz(direct));
+        for (std::size_t c = 0; c < 3; ++c) sum[c] -= of_it[c];
+        return mean_rgb(sum, total_->valid);
+      };
+    };
+    add_rgb("diffuse_indirect.", rest(Layer::kDiffuse, Layer::kDiffuseDirect));
+    add_rgb("specular_indirect.", rest(Layer::kSpecular, Layer::kSpecularDirect));
+  }
+  void add_moments(std::size_t m) {
+    const auto layer = Layer(m);
+    const std::string name(layer == Layer::kBeauty ? "beauty" : layer_name(layer));
+    if (layout_.aovs.halves) {
+      add_rgb(name + "_a.", [&] {
+        Xyz a = total_->three(slots::xyz(layer));
+        const Xyz b = total_->three(slots::b_xyz(m));
+        for (std::size_t c = 0; c < 3; ++c) a[c] -= b[c];
+        return mean_rgb(a, total_->valid - total_->valid_b);
+      });
+      add_rgb(name + "_b.", [&] { return mean_rgb(total_->three(slots::b_xyz(m)), total_->valid_b); });
+    }
+    if (layout_.aovs.variance) {
+      add_rgb(name + "_variance.", [&] {
+        const Rgb sum = xyz_to_rgb(total_->three(slots::xyz(layer)));
+        Rgb variance{};
+        for (std::size_t c = 0; c < 3; ++c) {
+          variance[c] = variance_of_mean(sum[c], total_->v[slots::rgb_squares(m) + c], total_->valid);
+        }
+        return variance;
+      });
+    }
+  }
+  void add_feature(Feature feature) {
+    const bool is_color = feature <= Feature::kAlbedo;
+    const std::string name(feature_name(feature));
+    const std::size_t begin = feature_begin(feature);
+    const auto channels = [&](const std::string& layer, const auto& value) {
+      for (std::size_t c = 0; c < feature_size(feature); ++c) {
+        const std::string channel = is_color ? kRgb[c] : feature == Feature::kDepth ? "Z" : kXyzNames[c];
+        add(layer + '.' + channel, [&] { return value(c); });
+      }
+    };
+    channels(name,
+             [&](std::size_t c) { return over(total_->v[slots::kFeatures + begin + c], total_->valid); });
+    if (!layout_.aovs.feature_variance) return;
+    channels(name + "_variance", [&](std::size_t c) {
+      return variance_of_mean(total_->v[slots::kFeatures + begin + c],
+                              total_->v[slots::kFeatureSquares + begin + c], total_->valid);
+    });
+  }
+
+  const FilmLayout& layout_;
+  std::vector<std::string>* names_ = nullptr;
+  const PixelTotal* total_ = nullptr;
+  float* out_ = nullptr;
+};
+
+}  // namespace
+
+Image Film::resolve() const {
+  std::vector<std::string> names;
+  ChannelWalk(layout_, names).walk();
+  Image image(width_, height_, std::move(names));
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+    const std::size_t count = blocks(tile).size();
+    const double taken = double(samples(tile)), taken_b = double(samples_in_half_b(tile));
+    for_each_pixel(tiles_[tile], [&](std::size_t pixel) {
+      PixelTotal total;
+      for (std::size_t i = 0; i < slots_.size(); ++i) {
+        double& sum = total.v[slots_[i]];
+        for (std::size_t b = 0; b < count; ++b) sum += planes_[b].rows[pixel * slots_.size() + i];
+      }
+      total.valid = taken - total.v[slots::kInvalid];
+      total.valid_b = taken_b - total.v[slots::kInvalidB];
+      ChannelWalk(layout_, total, &image.data[pixel * image.channels.size()]).walk();
+    });
+  }
+  return image;
+}
+
+double Film::relative_error() const {
+  SPECTRACE_CHECK(layout_.aovs.halves);
+  const Image image = resolve();
+  const auto index = [&](const char* name) { return image.find_channel(name).value(); };
+  const std::size_t mean = index("R"), a = index("beauty_a.R"), b = index("beauty_b.R");
+  const std::size_t stride = image.channels.size(), pixels = image.data.size() / stride;
+  const auto sum = [&](const auto& term) {
+    double total = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) total += term(&image.data[i * stride], c);
+    }
+    return total / double(3 * pixels);
+  };
+  const double floor =
+      kErrorFloor * sum([&](const float* pixel, std::size_t c) { return double(pixel[mean + c]); });
+  return std::sqrt(sum([&](const float* pixel, std::size_t c) {
+    const double m = double(pixel[mean + c]), d = (double(pixel[a + c]) - double(pixel[b + c])) / 2;
+    return d == 0 ? 0 : d * d / (m * m + floor * floor);
+  }));
+}
+
+Image Film::resolve_spectral(Layer layer) const {
+  SPECTRACE_CHECK(layout_.bins && layout_.bin_layers.has(layer) && layout_.layers.has(layer));
+  const SpectralBins& bins = *layout_.bins;
+  std::vector<std::string> names(kRgb.begin(), kRgb.end());
+  for (const double nm : bins.centers_nm())
+    names.push_back(spectral_channel_name(SpectralKind::kRadiance, nm));
+  Image image(width_, height_, std::move(names));
+  const std::size_t stride = layout_.bins_per_pixel(), offset = layout_.bin_layers.slot(layer) * bins.count;
+  const auto kept = std::find(slots_.begin(), slots_.end(), slots::xyz(layer));
+  const auto slot = std::size_t(kept - slots_.begin());
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+    const std::size_t count = blocks(tile).size();
+    for_each_pixel(tiles_[tile], [&](std::size_t pixel) {
+      const auto sum = [&](const auto& of_plane) {
+        double total = 0;
+        for (std::size_t b = 0; b < count; ++b) total += double(of_plane(planes_[b]));
+        return total;
+      };
+      const auto row = [&](std::size_t i) {
+        return sum([&](const Plane& plane) { return plane.rows[pixel * slots_.size() + i]; });
+      };
+      const double valid = double(samples(tile)) - row(0);
+      float* out = &image.data[pixel * image.channels.size()];
+      for (double channel : mean_rgb({row(slot), row(slot + 1), row(slot + 2)}, valid))
+        *out++ = float(channel);
+      for (std::size_t bin = 0; bin < bins.count; ++bin) {
+        const double total =
+            sum([&](const Plane& plane) { return plane.bins[pixel * stride + offset + bin]; });
+        *out++ = float(over(total, valid));
+      }
+    });
+  }
+  return image;
+}
+
+}  // namespace spectrace

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/partial_render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/base/version.h"
+#include "materials/tensor_file.h"
+
+namespace spectrace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDescription = "spectrace partial render, format 1";
+constexpr std::int64_t kMaxSide = 65536, kMaxSamples = std::int64_t(1) << 40;
+constexpr std::int64_t kMaxBins = 1000;
+
+template <typename T>
+Tensor to_tensor(std::string name, TensorType type, std::vector<std::size_t> shape,
+                 const std::vector<T>& values) {
+  Tensor tensor{.name = std::move(name), .type = type, .shape = std::move(shape), .bytes = {}};
+  tensor.bytes.resize(values.size() * sizeof(T));
+  if (!values.empty()) std::memcpy(tensor.bytes.data(), values.data(), tensor.bytes.size());
+  return tensor;
+}
+
+template <typename T>
+std::vector<T> from_tensor(const Tensor& tensor) {
+  std::vector<T> values(tensor.bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), tensor.bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+std::string text_of(const Tensor& tensor) {
+  return {reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size()};
+}
+
+// ---- The header: JSON
+// ---------------------------------------------------------------------------------------
+
+void write_names(JsonWriter& json, std::string_view key, const std::vector<std::string>& names) {
+  json.key(key);
+  json.begin_array();
+  for (const std::string& name : names) json.value(name);
+  json.end_array();
+}
+
+std::vector<std::string> names_of(LayerSet layers) {
+  std::vector<std::string> names;
+  layers.for_each([&](Layer layer) { names.emplace_back(layer_name(layer)); });
+  return names;
+}
+
+/// Every name whose AOVs are in the set; together they are the set.
+std::vector<std::string> names_of(const AovSet& aovs) {
+  std::vector<std::string> names;
+  for (const AovName& each : aov_names()) {
+    if ((aovs | each.set) == aovs) names.emplace_back(each.name);
+  }
+  return names;
+}
+
+std::string header_text(const PartialRender& partial) {
+  const Film& film = partial.film;
+  JsonWriter json;
+  json.begin_object();
+  json.member("program", partial.identity.program);
+  json.member("scene_sha256", partial.identity.scene_sha256);
+  write_names(json, "material_sha256s", partial.identity.material_sha256s);
+  json.member("seed", std::to_string(partial.identity.seed));
+  json.member("width", film.width());
+  json.member("height", film.height());
+  json.member("first_sample", film.target().first);
+  json.member("last_sample", film.target().last);
+  write_names(json, "layers", names_of(film.layout().layers));
+  write_names(json, "aovs", names_of(film.layout().aovs));
+  if (const std::optional<SpectralBins>& bins = film.layout().bins) {
+    json.key("bins");
+    json.begin_object();
+    json.member("min_nm", bins->range.min_nm);
+    json.member("max_nm", bins->range.max_nm);
+    json.member("count", bins->count);
+    json.member("at_centers", bins->at_centers);
+    write_names(json, "layers", names_of(film.layout().bin_layers));
+    json.end_object();
+  }
+  json.key("image");
+  json.begin_object();
+  for (const auto& [name, value] : partial.metadata) {
+    json.key(name);
+    std::visit([&](const auto& v) { json.value(v); }, value);
+  }
+  json.end_object();
+  json.end_object();
+  return json.text();
+}
+
+LayerSet read_layers(const JsonValue& json) {
+  LayerSet layers;
+  for (const JsonValue& element : json.elements()) {
+    const std::string name = element.string();
+    bool is_known = false;
+    for (int i = 0; i < kLayerCount; ++i) {
+      if (layer_name(Layer(i)) != name) continue;
+      layers = layers | LayerSet(Layer(i));
+      is_known = true;
+    }
+    if (!is_known) element.error("is no layer");
+  }
+  return layers;
+}
+
+std::vector<std::string> read_texts(const JsonValue& json) {
+  std::vector<std::string> texts;
+  for (const JsonValue& element : json.elements()) texts.push_back(element.string());
+  return texts;
+}
+
+std::uint64_t read_seed(const JsonValue& json) {
+  const std::string text = json.string();
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size()) json.error("expected digits of a seed");
+  return seed;
+}
+
+struct Header {
+  RenderIdentity identity;
+  Metadata metadata;
+  FilmLayout layout;
+  int width = 1, height = 1;
+  SampleRange target;
+};
+
+void read_layout(const JsonValue& root, FilmLayout& layout) {
+  layout.layers = read_layers(root.require("layers"));
+  for (const JsonValue& name : root.require("aovs").elements()) {
+    if (const auto problem = add_aov(name.string(), layout.aovs)) name.error(*problem);
+  }
+  const JsonValue json = root.get("bins");
+  if (!json.exists()) return;
+  const auto nm = [&](const char* key) {
+    return static_cast<Float>(json.require(key).number(1, {.min = 1, .max = 1e6}));
+  };
+  SpectralBins bins{.range = {nm("min_nm"), nm("max_nm")}};
+  if (!(bins.range.width_nm() > 0)) json.error("expected min_nm below max_nm");
+  bins.count = std::size_t(json.require("count").integer(1, 1, kMaxBins));
+  bins.at_centers = json.require("at_centers").boolean(false);
+  layout.bins = bins;
+  layout.bin_layers = read_layers(json.require("layers"));
+}
+
+Header read_header(const std::string& text, const std::string& file) {
+  JsonDocument document = JsonDocument::parse(text, file);
+  const JsonValue root = document.root();
+  Header header;
+  header.identity = {.program = root.require("program").string(),
+                     .scene_sha256 = root.require("scene_sha256").string(),
+                     .material_sha256s = read_texts(root.require("material_sha256s")),
+                     .seed = read_seed(root.require("seed"))};
+  header.width = int(root.require("width").integer(1, 1, kMaxSide));
+  header.height = int(root.require("height").integer(1, 1, kMaxSide));
+  header.target.first = std::uint64_t(root.require("first_sample").integer(0, 0, kMaxSamples));
+  header.target.last = std::uint64_t(root.require("last_sample").integer(1, 1, kMaxSamples));
+  if (header.target.first % kLeafSamples != 0 || header.target.first >= header.target.last) {
+    root.error("expected first_sample to be a multiple of 8 and below last_sample");
+  }
+  read_layout(root, header.layout);
+  const JsonValue image = root.require("image");
+  for (const std::string& key : image.keys()) {
+    const JsonValue value = image.get(key);
+    if (value.is_string()) {
+      header.metadata[key] = value.string();
+    } else {
+      header.metadata[key] = value.number(0);
+    }
+  }
+  root.reject_unknown_keys();
+  document.throw_if_wrong();
+  return header;
+}
+
+std::string describe(SampleRange range) { return fmt::format("{}:{}", range.first, range.last); }
+
+}  // namespace
+
+RenderIdentity identity_of(const Scene& scene, std::uint64_t seed) {
+  return {.program = fmt::format("{} ({})", version(), commit()),
+          .scene_sha256 = scene.sha256,
+          .material_sha256s = scene.material_sha256s,
+          .seed = seed};
+}
+
+void write_partial(const fs::path& file, const PartialRender& partial) {
+  const Film& film = partial.film;
+  const std::size_t pixels = std::size_t(film.width()) * std::size_t(film.height());
+  TensorFile out;
+  out.add(Tensor::from_text("description", kDescription));
+  out.add(Tensor::from_text("header", header_text(partial)));
+  out.add(to_tensor("ends", TensorType::kU64, {film.ends_by_tile().size()}, film.ends_by_tile()));
+  for (std::size_t i = 0; i < film.planes().size(); ++i) {
+    const Film::Plane& plane = film.planes()[i];
+    out.add(to_tensor(fmt::format("rows_{}", i), TensorType::kF64, {pixels, plane.rows.size() / pixels},
+                      plane.rows));
+    if (plane.bins.empty()) continue;
+    out.add(to_tensor(fmt::format("bins_{}", i), TensorType::kF32, {pixels, plane.bins.size() / pixels},
+                      plane.bins));
+  }
+  out.write(file);
+}
+
+PartialRender read_partial(const fs::path& file) {
+  const TensorFile in = TensorFile::read(file);
+  const std::string name = file.string();
+  const std::size_t any[1] = {0};
+  const TensorType text[1] = {TensorType::kU8};
+  if (text_of(in.require("description", text, any)) != kDescription) {
+    throw InputError(name, "field description", fmt::format("is no \"{}\"", kDescription));
+  }
+  Header header = read_header(text_of(in.require("header", text, any)), name + " (header)");
+  const std::size_t pixels = std::size_t(header.width) * std::size_t(header.height);
+  const std::size_t slots = header.layout.kept_slots().size(), bins = header.layout.bins_per_pixel();
+  Film film(header.width, header.height, std::move(header.layout), header.target);
+  const TensorType u64[1] = {TensorType::kU64}, f64[1] = {TensorType::kF64}, f32[1] = {TensorType::kF32};
+  const std::size_t tiles[1] = {film.tiles().size()};
+  std::vector<Film::Plane> planes;
+  for (std::size_t i = 0; in.find(fmt::format("rows_{}", i)) != nullptr; ++i) {
+    const std::size_t row_shape[2] = {pixels, slots}, bin_shape[2] = {pixels, bins};
+    planes.push_back(
+        {.rows = from_tensor<double>(in.require(fmt::format("rows_{}", i), f64, row_shape)), .bins = {}});
+    if (bins > 0) {
+      planes.back().bins = from_tensor<float>(in.require(fmt::format("bins_{}", i), f32, bin_shape));
+    }
+  }
+  if (!film.restore(from_tensor<std::uint64_t>(in.require("ends", u64, tiles)), std::move(planes))) {
+    throw InputError(name, "field ends", "does not fit the range of samples and the fields rows_*");
+  }
+  return {.identity = std::move(header.identity),
+          .metadata = std::move(header.metadata),
+          .film = std::move(film)};
+}
+
+void check_same_image(const PartialRender& partial, const fs::path& file, const RenderIdentity& wanted,
+                      int width, int height, const FilmLayout& layout) {
+  const auto refuse = [&](const std::string& problem) { throw InputError(file.string(), "", problem); };
+  const RenderIdentity& found = partial.identity;
+  if (found.scene_sha256 != wanted.scene_sha256)
+    refuse("is of another scene, or the scene has changed since");
+  if (found.material_sha256s != wanted.material_sha256s) {
+    refuse("is of other materials, or their files have changed since");
+  }
+  if (found.seed != wanted.seed) {
+    refuse(fmt::format("is of seed {}, not of seed {}", found.seed, wanted.seed));
+  }
+  if (found.program != wanted.program) {
+    refuse(fmt::format("is by spectrace {}, not {}: their images may differ", found.program, wanted.program));
+  }
+  if (partial.film.width() != width || partial.film.height() != height) {
+    refuse(fmt::format("has {} x {} pixels, not {} x {}", partial.film.width(), partial.film.height(), width,
+                       height));
+  }
+  if (!(partial.film.layout() == layout)) refuse("holds other AOVs or wavelengths");
+}
+
+PartialRender merge_partials(const std::vector<fs::path>& files) {
+  SPECTRACE_CHECK(!files.empty());
+  struct Part {
+    fs::path file;
+    PartialRender partial;
+  };
+  std::vector<Part> parts;
+  for (const fs::path& file : files) {
+    parts.push_back({file, read_partial(file)});
+    const PartialRender& first = parts.front().partial;
+    check_same_image(parts.back().partial, file, first.identity, first.film.width(), first.film.height(),
+                     first.film.layout());
+    if (!parts.back().partial.film.is_complete()) {
+      throw InputError(file.string(), "", "is not complete: go on with it first (--resume)");
+    }
+  }
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.partial.film.target().first < b.partial.film.target().first;
+  });
+  PartialRender merged = std::move(parts.front().partial);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const SampleRange before = merged.film.target(), next = parts[i].partial.film.target();
+    if (next.first < before.last) {
+      throw InputError(parts[i].file.string(), "",
+                       fmt::format("samples {} overlap with samples {} of {}", describe(next),
+                                   describe(before), parts[i - 1].file.string()));
+    }
+    if (next.first > before.last) {
+      throw InputError(
+          parts[i].file.string(), "",
+          fmt::format("samples {} are missing before its first", describe({before.last, next.first})));
+    }
+    merged.film.append(parts[i].partial.film);
+  }
+  return merged;
+}
+
+}  // namespace spectrace

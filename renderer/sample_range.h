@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranges of samples, and the binary tree in whose order they are summed. A sum of floating-point numbers
+// depends on its order; by always adding the halves of aligned blocks, ranges rendered apart, on any number
+// of machines and with any pauses, join to the same bits (ADR 0014).
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace spectrace {
+
+/// Samples of a pixel that are traced together, and the leaves of the tree.
+inline constexpr std::uint64_t kLeafSamples = 8;
+
+/// Leaves [first, first + count) of the tree; a block: count a power of two and first a multiple of it.
+struct LeafRange {
+  std::uint64_t first = 0, count = 0;
+
+  [[nodiscard]] std::uint64_t end() const { return first + count; }
+  friend constexpr bool operator==(LeafRange, LeafRange) = default;
+};
+
+/// The largest block that begins at `first` and has at most `most` (> 0) leaves.
+[[nodiscard]] constexpr LeafRange largest_block(std::uint64_t first, std::uint64_t most) {
+  const std::uint64_t aligned = first == 0 ? most : std::uint64_t(1) << std::countr_zero(first);
+  return {first, std::bit_floor(std::min(aligned, most))};
+}
+/// Are they the halves of one block?
+[[nodiscard]] constexpr bool are_halves(LeafRange left, LeafRange right) {
+  return left.count == right.count && left.end() == right.first && left.first % (2 * left.count) == 0;
+}
+/// The largest blocks that `leaves` consists of, from left to right: what joining halves as they come leaves.
+[[nodiscard]] std::vector<LeafRange> blocks_of(LeafRange leaves);
+
+/// Samples of a block, of `samples` that are in it, that make up its half B: its right half. Even and odd
+/// samples would lie in opposite halves of every dimension of the Sobol' sequence, and so be two different
+/// pictures; the halves of a block are as even as the block.
+[[nodiscard]] constexpr std::uint64_t samples_in_half_b(LeafRange block, std::uint64_t samples) {
+  const std::uint64_t left = block.count * kLeafSamples / 2;
+  return samples > left ? samples - left : 0;
+}
+
+/// Sums the leaves of one block as they come, in the order of the tree. `T`: has +=, which adds the right
+/// half to the left one.
+template <typename T>
+class BlockSum {
+ public:
+  /// Room for a block of 2^`levels` leaves.
+  explicit BlockSum(T zero) : zero_(std::move(zero)) {}
+
+  void clear() { count_ = 0; }
+  /// `leaf` is what came after the ones before; it is taken from.
+  void add(T& leaf) {
+    std::size_t level = 0;
+    for (; (count_ >> level & 1) != 0; ++level) {
+      levels_[level] += leaf;
+      std::swap(levels_[level], leaf);
+    }
+    if (level == levels_.size()) levels_.push_back(zero_);
+    std::swap(levels_[level], leaf);
+    ++count_;
+  }
+  /// Of the 2^k leaves added.
+  [[nodiscard]] const T& sum() const { return levels_[std::size_t(std::countr_zero(count_))]; }
+
+ private:
+  T zero_;
+  std::vector<T> levels_;  // sums of blocks of 2^level leaves, where count_ has that bit
+  std::uint64_t count_ = 0;
+};
+
+/// Samples [first, last) of each pixel; first a multiple of kLeafSamples.
+struct SampleRange {
+  std::uint64_t first = 0, last = 0;
+
+  [[nodiscard]] std::uint64_t count() const { return last - first; }
+  /// The leaves it touches; the last one may be incomplete.
+  [[nodiscard]] LeafRange leaves() const {
+    const std::uint64_t begin = first / kLeafSamples;
+    return {begin, (last + kLeafSamples - 1) / kLeafSamples - begin};
+  }
+  friend constexpr bool operator==(SampleRange, SampleRange) = default;
+};
+
+}  // namespace spectrace

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders that are stopped, killed, gone on with, split and joined: the same bits in the end.
+#include <csignal>
+#include <random>
+
+#include "core/image/image.h"
+#include "tests/cli/program.h"
+
+namespace spectrace::test {
+namespace {
+
+class LongRender : public Program {
+ protected:
+  LongRender() {
+    write_text(folder_ / "scene.json",
+               R"({"camera": {"origin": [0, -4, 1], "target": [0, 0, 0], "up": [0, 0, 1]},
+"film": {"width": 40, "height": 36, "spectral": {"bins": 12}}, "sampler": {"spp": 96}, "aovs": "denoise",
+"materials": [{"name": "m", "type": "plastic", "reflectance": {"rgb": [0.7, 0.3, 0.1]}, "roughness": 0.3,
+  "eta": 1.5}],
+"shapes": [{"type": "sphere", "material": "m"}, {"type": "quad", "material": "m", "corner": [-3, -3, -1],
+  "edge_u": [6, 0, 0], "edge_v": [0, 6, 0]}],
+"lights": [{"type": "environment", "radiance": 1}, {"type": "point", "position": [1, -2, 3], "intensity": 9}]})");
+  }
+  ProgramResult render(const std::string& output, std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"scene.json", "-o", output});
+    return run(options);
+  }
+  ProgramResult run_and_signal(const std::vector<std::string>& arguments, int signal, int after_ms) const {
+    return run_program(SPECTRACE_BINARY, arguments, folder_.path(), {}, {signal, after_ms});
+  }
+  void expect_same_images(const std::string& a, const std::string& b) const {
+    for (const char* ending : {".exr", ".spectral.exr", ".diffuse.spectral.exr", ".specular.spectral.exr"}) {
+      const Image first = read_image(folder_ / (a + ending)), second = read_image(folder_ / (b + ending));
+      EXPECT_EQ(first.channels, second.channels);
+      EXPECT_EQ(first.data, second.data) << a << " and " << b << ending;
+    }
+  }
+};
+
+TEST_F(LongRender, GoesOnAfterBeingKilledToTheIdenticalImage) {
+  ASSERT_EQ(render("whole.exr").exit_code, 0);
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> milliseconds(5, 400);
+  int killed = 0;
+  for (int i = 0; i < 10; ++i) {
+    std::filesystem::remove(folder_ / "part.partial");
+    const ProgramResult first = run_and_signal({"scene.json", "-o", "part.exr", "--checkpoint", "0.01"},
+                                               SIGKILL, milliseconds(random));
+    killed += first.signal == SIGKILL ? 1 : 0;
+    ASSERT_EQ(render("part.exr", {"--resume"}).exit_code, 0);
+    expect_same_images("part", "whole");
+  }
+  EXPECT_GT(killed, 0) << "all had ended before";
+}
+
+TEST_F(LongRender, WritesWhatIsThereWhenInterruptedAndGoesOn) {
+  ASSERT_EQ(render("whole.exr", {"--spp", "1024"}).exit_code, 0);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::filesystem::remove(folder_ / "part.partial");
+    const ProgramResult first =
+        run_and_signal({"scene.json", "-o", "part.exr", "--spp", "1024", "--checkpoint", "60"}, signal, 1000);
+    ASSERT_EQ(first.exit_code, 5) << first.output << first.errors;
+    EXPECT_TRUE(first.says("interrupted")) << first.output;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "part.exr"));
+    ASSERT_EQ(render("part.exr", {"--spp", "1024", "--resume"}).exit_code, 0);
+    expect_same_images("part", "whole");
+  }
+}
+
+TEST_F(LongRender, ShardsMergeInAnyOrderWhateverTheirThreads) {
+  ASSERT_EQ(render("whole.exr").exit_code, 0);
+  ASSERT_EQ(render("a.exr", {"--samples", "0:24", "--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(render("b.exr", {"--samples", "24:32", "--threads", "2"}).exit_code, 0);
+  ASSERT_EQ(render("c.exr", {"--samples", "32:72", "--threads", "7"}).exit_code, 0);
+  ASSERT_EQ(render("d.exr", {"--samples", "72:96"}).exit_code, 0);
+  ASSERT_EQ(run({"merge", "d.partial", "b.partial", "a.partial", "c.partial", "-o", "merged.exr"}).exit_code,
+            0);
+  expect_same_images("merged", "whole");
+  ASSERT_EQ(run({"merge", "b.partial", "a.partial", "-o", "ab.partial"}).exit_code, 0);
+  ASSERT_EQ(run({"merge", "c.partial", "d.partial", "ab.partial", "-o", "twice.exr"}).exit_code, 0);
+  expect_same_images("twice", "whole");
+  EXPECT_EQ(std::get<std::string>(read_metadata(folder_ / "merged.exr").at("spectrace:sampleRange")), "0:96");
+}
+
+TEST_F(LongRender, MergeRefusesWhatIsNotOneImage) {
+  ASSERT_EQ(render("a.exr", {"--samples", "0:16"}).exit_code, 0);
+  ASSERT_EQ(render("b.exr", {"--samples", "8:24"}).exit_code, 0);
+  ASSERT_EQ(render("seed.exr", {"--samples", "16:24", "--seed", "3"}).exit_code, 0);
+  write_text(folder_ / "whole.exr", "what was there");
+  expect_bad_input({"merge", "a.partial", "b.partial", "-o", "whole.exr"}, "b.partial: samples 8:24 overlap");
+  expect_bad_input({"merge", "a.partial", "seed.partial", "-o", "whole.exr"}, "seed.partial: is of seed 3");
+  expect_bad_input({"merge", "a.partial", "scene.json", "-o", "whole.exr"}, "scene.json");
+  EXPECT_EQ(read_text(folder_ / "whole.exr"), "what was there");
+}
+
+TEST_F(LongRender, ResumesToMoreSamplesButNotInAnotherScene) {
+  ASSERT_EQ(render("whole.exr").exit_code, 0);
+  ASSERT_EQ(render("part.exr", {"--spp", "32", "--checkpoint", "60"}).exit_code, 0);
+  ASSERT_EQ(render("part.exr", {"--resume"}).exit_code, 0);
+  expect_same_images("part", "whole");
+  expect_bad_input({"scene.json", "-o", "part.exr", "--resume", "--seed", "1"}, "part.partial: is of seed 0");
+  expect_bad_input({"scene.json", "-o", "part.exr", "--resume", "--aovs", "none"},
+                   "part.partial: holds other AOVs");
+  expect_bad_input({"scene.json", "-o", "part.exr", "--resume", "--spp", "64"},
+                   "part.partial: holds samples");
+  write_lambert_scene("scene.json");
+  expect_bad_input({"scene.json", "-o", "part.exr", "--resume"}, "part.partial: is of another scene");
+}
+
+TEST_F(LongRender, StopsWhenTheErrorIsSmallEnough) {
+  const ProgramResult result = render("noise.exr", {"--noise", "0.05"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Metadata header = read_metadata(folder_ / "noise.exr");
+  const auto spp = std::get<std::int64_t>(header.at("spectrace:spp"));
+  const ProgramResult half = render("half.exr", {"--spp", std::to_string(spp / 2)});
+  const auto error_of = [](const ProgramResult& r) {
+    const std::string key = "relative error: ";
+    const std::size_t at = r.output.find(key);
+    EXPECT_NE(at, std::string::npos) << r.output;
+    return std::stod(r.output.substr(at + key.size()));
+  };
+  EXPECT_LE(error_of(result), 0.05);
+  EXPECT_GT(error_of(half), 0.05) << "it would have been enough";
+}
+
+TEST_F(LongRender, TakesTheTimeItIsGiven) {
+  ASSERT_EQ(render("time.exr", {"--time", "0.5"}).exit_code, 0);
+  const Metadata header = read_metadata(folder_ / "time.exr");
+  EXPECT_GT(std::get<std::int64_t>(header.at("spectrace:spp")), 8);
+  EXPECT_LT(std::get<double>(header.at("spectrace:seconds")), 5)
+      << "ten times what it was given: a busy machine";
+  const Image image = read_image(folder_ / "time.exr");
+  const std::size_t samples = image.find_channel("samples.Z").value();
+  for (std::size_t i = samples; i < image.data.size(); i += image.channels.size()) {
+    ASSERT_EQ(image.data[i], image.data[samples]) << "all pixels alike";
+  }
+}
+
+TEST_F(LongRender, ExplainsWhatSamplesMayBe) {
+  for (const char* samples : {"8", "8:8", "16:8", "4:8", "a:b", ":8", "0:"}) {
+    expect_usage_error({"scene.json", "-o", "x.exr", "--samples", samples});
+  }
+  expect_usage_error({"scene.json", "-o", "x.exr", "--samples", "0:8", "--spp", "8"});
+  expect_usage_error({"scene.json", "-o", "x.exr", "--aovs", "diffus"});
+}
+
+TEST_F(LongRender, NamesChannelsAsOthersDo) {
+  ASSERT_EQ(render("blender.exr", {"--spp", "8", "--aov-names", "blender"}).exit_code, 0);
+  const Image blender = read_image(folder_ / "blender.exr");
+  for (const char* channel : {"ViewLayer.Combined.R", "ViewLayer.DiffDir.G", "ViewLayer.GlossCol.B",
+                              "ViewLayer.Normal.X", "ViewLayer.Depth.Z"}) {
+    EXPECT_TRUE(blender.find_channel(channel)) << channel;
+  }
+  // Light times colour is the light that was there, as Blender's compositor multiplies it.
+  ASSERT_EQ(render("own.exr", {"--spp", "8"}).exit_code, 0);
+  const Image own = read_image(folder_ / "own.exr");
+  const auto at = [](const Image& image, const char* channel) {
+    return double(image.at(20, 18, image.find_channel(channel).value()));
+  };
+  EXPECT_NEAR(at(blender, "ViewLayer.DiffDir.G") * at(blender, "ViewLayer.DiffCol.G"),
+              at(own, "diffuse_direct.G"), 1e-5 * at(own, "diffuse_direct.G"));
+  ASSERT_EQ(render("kpcn.exr", {"--spp", "8", "--aov-names", "kpcn"}).exit_code, 0);
+  EXPECT_TRUE(read_image(folder_ / "kpcn.exr").find_channel("diffuseVariance.R"));
+}
+
+}  // namespace
+}  // namespace spectrace::test
