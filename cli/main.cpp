@@ -66,7 +66,8 @@ int main(int argc, char** argv) {
   ExitCode code = ExitCode::kInternal;
   try {
     code = spectrace::cli::run(argc, argv);
-    if (std::fflush(stdout) != 0) {
+    // An earlier, partial flush may have failed already: only the stream's own mark tells.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       throw spectrace::InputError("standard output", "", "cannot be written");
     }
   } catch (const spectrace::InputError& e) {

@@ -7,10 +7,9 @@
 
 #include "core/math/math.h"
 #include "core/math/sampler.h"
-#include "core/spectra/lane_to_xyz.h"
-#include "renderer/features.h"
-#include "renderer/first_hit.h"
 #include "renderer/lobe_shares.h"
+#include "renderer/path_value.h"
+#include "renderer/path_vertex.h"
 #include "renderer/render_job.h"
 #include "renderer/scene.h"
 #include "renderer/surface.h"
@@ -23,23 +22,6 @@ inline constexpr Float kShadowEnd = 1 - 16 * kFloatRounding;
 /// Roulette: survival lies in [1/20, 19/20]. Below, weights of survivors would grow without bound (hard case
 /// H10 above: measured albedos over 1 must still end).
 inline constexpr Float kMinSurvival = Float(0.05), kMaxSurvival = Float(0.95);
-/// Shading normals are bent until the viewer stands this far above their horizon (cosine), or as far as above
-/// the true one: interpolated normals that face away would render black rims (hard case H17).
-inline constexpr Float kMinShadingCosine = Float(1e-3);
-
-/// What one path brings.
-template <Features kFeatures>
-struct PathValue {
-  static constexpr LayerSet kLayers = layer_set(kFeatures);
-
-  std::array<PathXyz, kLayers.size()> xyz{};
-  bool valid = true;  ///< all of it finite and, where a layer is not signed, >= 0
-  /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
-  std::uint32_t measured = 0, extrapolated = 0;
-  std::conditional_t<kFeatures.more_aovs, FirstHit, NoFirstHit> first_hit;
-  std::conditional_t<kFeatures.spectral_film, LaneDeposits, NoLaneDeposits> lanes;
-};
-
 template <Features kFeatures>
 class PathTracer {
  public:
@@ -182,59 +164,22 @@ class PathTracer {
 
   // ---- What goes on -------------------------------------------------------------------------------------
 
-  /// A point with the frame its BSDF is evaluated in.
-  struct Vertex {
-    SurfacePoint point;  // normal_g on the frame's side
-    Frame frame;
-    Vec3 wo;  // local
-    const Material& material;
-    ShadingPoint at;
-    VertexNumbers numbers;
-  };
+  using Vertex = PathVertex<kFeatures>;
 
-  [[nodiscard]] Vertex make_vertex(SurfacePoint point, Vec3 wo) const {
-    const Material& material = scene_.materials[point.material];
-    bool flip = dot(wo, point.normal_g) < 0;
-    if constexpr (kFeatures.transmission || kFeatures.nested) flip = flip && !keeps_sides(material);
-    if (flip) {
-      point.normal_g = -point.normal_g;
-      point.normal_s = -point.normal_s;
-    }
-    const Float true_cosine = dot(wo, point.normal_g);
-    const Float side = true_cosine < 0 ? Float(-1) : Float(1);
-    const Float cosine = dot(wo, point.normal_s) * side;
-    const Float wanted = std::min(kMinShadingCosine, true_cosine * side);
-    if (cosine < wanted) {
-      point.normal_s = normalize(point.normal_s + wo * (side * (wanted - cosine)));
-    }
-    const Frame frame = frame_along(point.normal_s, point.tangent);
-    const ShadingPoint at = shading_point(point, footprint_);
-    return {point, frame, frame.to_local(wo), material, at, sampler_.vertex(vertex_)};
-  }
-
-  /// Light may not pass a surface because its shading normal is bent: both normals must agree on the side.
-  static bool sides_agree(const Vertex& vertex, Vec3 wi_world, Vec3 wi_local) {
-    return (dot(wi_world, vertex.point.normal_g) > 0) == (wi_local.z > 0);
-  }
-
-  /// What lights are chosen for: the same for the choice and for the weight of light met by chance.
-  static Receiver receiver(const Vertex& vertex) {
-    Receiver receiver{vertex.point.position, vertex.frame.n};
-    if constexpr (kFeatures.transmission || kFeatures.nested) {
-      if (keeps_sides(vertex.material)) receiver.normal = {};
-    }
-    return receiver;
+  [[nodiscard]] Vertex make_vertex(const SurfacePoint& point) const {
+    return {point, -ray_.direction, scene_.materials[point.material], shading_point(point, footprint_),
+            sampler_.vertex(vertex_)};
   }
 
   void sample_lights(const Vertex& vertex) {
     const std::optional<Lights::Choice> choice =
-        scene_.lights.choose(receiver(vertex), vertex.numbers.light_choice);
+        scene_.lights.choose(vertex.receiver(), vertex.numbers.light_choice);
     if (!choice) return;
     bool is_delta_light = true;
     const std::optional<LightSample> light = sample_light_source(vertex, choice->light, is_delta_light);
     if (!light) return;
     const Vec3 wi = vertex.frame.to_local(light->wi);
-    if (!sides_agree(vertex, light->wi, wi)) return;
+    if (!vertex.sides_agree(light->wi, wi)) return;
     const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, vertex.at);
     if (bsdf.value_cos.is_zero() || light->radiance.is_zero()) return;
     const Float pdf = light->pdf * choice->probability;
@@ -321,7 +266,7 @@ class PathTracer {
   bool pass([[maybe_unused]] const SurfacePoint& point) {
     const bool may_pass = kFeatures.nested && scene_.has_holes;
     if (!may_pass && !wants_first_hit()) return false;
-    const Vertex vertex = make_vertex(point, -ray_.direction);
+    const Vertex vertex = make_vertex(point);
     if constexpr (kFeatures.nested) {
       if (const auto s = may_pass ? sample_vertex(vertex) : std::nullopt; s && s->passes) {
         return go_straight_on(vertex, *s);
@@ -353,7 +298,7 @@ class PathTracer {
 
   /// Next-event estimation and the next ray. False: the path ends.
   bool scatter(const SurfacePoint& point) {
-    const Vertex vertex = make_vertex(point, -ray_.direction);
+    const Vertex vertex = make_vertex(point);
     if (const Float last = scene_.last_measured_cosine[point.material]; last > 0) {
       ++value_.measured;
       value_.extrapolated += std::abs(vertex.wo.z) < last ? 1 : 0;
@@ -368,7 +313,7 @@ class PathTracer {
     if (!s || s->weight.is_zero()) return false;
     if (passes) return go_straight_on(vertex, *s);
     const Vec3 wi = vertex.frame.to_world(s->wi);
-    if (!sides_agree(vertex, wi, s->wi)) return false;
+    if (!vertex.sides_agree(wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
         share_ = lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, s->wi, vertex.at));
@@ -390,7 +335,7 @@ class PathTracer {
     }
     last_was_delta_ = s->is_delta;
     last_pdf_ = s->pdf;
-    last_receiver_ = receiver(vertex);
+    last_receiver_ = vertex.receiver();
     ray_ = {ray_origin(vertex.point, wi), wi};
     ++depth_;
     return survives(vertex.numbers.roulette);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one path from the camera brings to the film: as much as a kernel's features want of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/spectra/lane_to_xyz.h"
+#include "renderer/features.h"
+#include "renderer/first_hit.h"
+#include "renderer/layers.h"
+
+namespace spectrace {
+
+template <Features kFeatures>
+struct PathValue {
+  static constexpr LayerSet kLayers = layer_set(kFeatures);
+
+  std::array<PathXyz, kLayers.size()> xyz{};
+  bool valid = true;  ///< all of it finite and, where a layer is not signed, >= 0
+  /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
+  std::uint32_t measured = 0, extrapolated = 0;
+  std::conditional_t<kFeatures.more_aovs, FirstHit, NoFirstHit> first_hit;
+  std::conditional_t<kFeatures.spectral_film, LaneDeposits, NoLaneDeposits> lanes;
+};
+
+}  // namespace spectrace
