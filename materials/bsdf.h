@@ -71,6 +71,7 @@ struct BsdfRandom {
 /// - sample: nullopt where no light leaves or the drawn direction is invalid.
 /// - evaluate_lobes: the same value, by lobe.
 /// - is_delta: every lobe is a delta distribution, evaluate() is always 0.
+/// - kOnlyLobe, where there is one: all that is reflected is of this lobe.
 /// Reflecting materials are one-sided: both directions must have z > 0. The caller flips frames for
 /// two-sided shading, except of those that tell their sides apart (Material's keeps_sides).
 template <typename T>

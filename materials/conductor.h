@@ -24,6 +24,7 @@ struct RoughConductor {
   ConductorFresnel fresnel;
   Ggx ggx;
 
+  static constexpr Lobe kOnlyLobe = Lobe::kSpecular;
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;

@@ -10,6 +10,7 @@ namespace spectrace {
 struct Lambert {
   Texture reflectance;  ///< in [0, 1]
 
+  static constexpr Lobe kOnlyLobe = Lobe::kDiffuse;
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;

@@ -24,6 +24,15 @@ bool is_delta(const Material& material) {
   return std::visit([](const auto& m) { return m.is_delta(); }, material);
 }
 
+std::optional<Lobe> only_lobe(const Material& material) {
+  return std::visit(
+      []<typename M>(const M&) -> std::optional<Lobe> {
+        if constexpr (requires { M::kOnlyLobe; }) return M::kOnlyLobe;
+        return std::nullopt;
+      },
+      material);
+}
+
 NestedMaterial nest(Material material) {
   return NestedMaterial(std::make_shared<const MaterialNode>(MaterialNode{std::move(material)}));
 }

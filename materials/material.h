@@ -49,6 +49,8 @@ void for_each_part(const Material& material, const std::function<void(const Mate
 [[nodiscard]] std::optional<BsdfSample> sample(const Material& material, Vec3 wo, const BsdfRandom& u,
                                                const ShadingPoint& at);
 [[nodiscard]] bool is_delta(const Material& material);
+/// Lobe that has all the light, if every direction tells the same: no need to ask evaluate_lobes().
+[[nodiscard]] std::optional<Lobe> only_lobe(const Material& material);
 /// Has a delta lobe, alone or beside others.
 [[nodiscard]] bool has_delta_lobe(const Material& material);
 /// Light is refracted through it.

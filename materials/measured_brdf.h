@@ -16,6 +16,7 @@ namespace spectrace {
 /// Cheap to copy: the tables are shared.
 class MeasuredBrdf {
  public:
+  static constexpr Lobe kOnlyLobe = Lobe::kSpecular;
   explicit MeasuredBrdf(const MeasuredTables& tables);
 
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;

@@ -22,6 +22,7 @@ inline constexpr Float kMinRoughContrast = Float(0.01);
 /// light sampling weighs all lanes with one density, and the hero's is 0 where only others refract to.
 class RoughDielectric {
  public:
+  static constexpr Lobe kOnlyLobe = Lobe::kSpecular;
   RoughDielectric() : RoughDielectric(Spectrum::constant(Float(1.5)), {}) {}
   /// `eta` of the interior > 0, kMinRoughContrast from 1 at every wavelength; `film` on the outside of every
   /// facet.

@@ -27,6 +27,7 @@ struct HalfDifferenceTable {
 /// directions that those draw (materials/paired_brdf.h), not rendered for its own sake. Cheap to copy.
 class TabulatedBrdf {
  public:
+  static constexpr Lobe kOnlyLobe = Lobe::kSpecular;
   explicit TabulatedBrdf(std::shared_ptr<const HalfDifferenceTable> table);
 
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;

@@ -53,15 +53,18 @@ struct LeafSums {
 /// Halves, squares and the first hit of one sample.
 template <typename Row, Features kFeatures>
 void add_more_aovs(Row& row, const PathValue<kFeatures>& value, bool is_in_b) {
-  for (std::size_t m = 0; m < kMomentLayers; ++m) {
-    if (!value.kLayers.has(Layer(m))) continue;
-    const PathXyz& xyz = value.xyz[value.kLayers.slot(Layer(m))];
-    const Rgb rgb = xyz_to_rgb({xyz[0], xyz[1], xyz[2]});
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (is_in_b) row[slots::b_xyz(m) + c] += xyz[c];
-      row[slots::rgb_squares(m) + c] += rgb[c] * rgb[c];
+  constexpr LayerSet kLayers = layer_set(kFeatures);
+  for_each_layer<kLayers>([&](auto layer) {
+    constexpr auto kMoment = std::size_t(decltype(layer)::value);
+    if constexpr (kMoment < kMomentLayers) {
+      const PathXyz& xyz = value.xyz[kLayers.slot(layer)];
+      const Rgb rgb = xyz_to_rgb({xyz[0], xyz[1], xyz[2]});
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (is_in_b) row[slots::b_xyz(kMoment) + c] += xyz[c];
+        row[slots::rgb_squares(kMoment) + c] += rgb[c] * rgb[c];
+      }
     }
-  }
+  });
   row[slots::kExtrapolated] += value.extrapolated;
   const FirstHit& seen = value.first_hit;
   if (!seen.is_known) return;
@@ -109,8 +112,9 @@ void add_to(LeafSums<kFeatures>& sums, const PathValue<kFeatures>& value, const 
     if constexpr (kFeatures.more_aovs) row[slots::kInvalidB] += is_in_b ? 1 : 0;
     return;
   }
-  value.kLayers.for_each([&](Layer layer) {
-    const PathXyz& xyz = value.xyz[value.kLayers.slot(layer)];
+  constexpr LayerSet kLayers = layer_set(kFeatures);
+  for_each_layer<kLayers>([&](auto layer) {
+    const PathXyz& xyz = value.xyz[kLayers.slot(layer)];
     for (std::size_t c = 0; c < 3; ++c) row[slots::xyz(layer) + c] += xyz[c];
   });
   if constexpr (kFeatures.more_aovs) add_more_aovs(row, value, is_in_b);
@@ -264,7 +268,9 @@ constexpr std::array kKernels{
     make_kernel<kBox>("box"),
     make_kernel<kStudio>("studio"),
     make_kernel<with_specular_parts(kStudio)>("studio, specular parts"),
-    make_kernel<with_more_aovs(with_specular_parts(kStudio))>("studio, AOVs"),
+    make_kernel<with_more_aovs(kBox)>("box, AOVs"),
+    make_kernel<with_more_aovs(kStudio)>("studio, AOVs"),
+    make_kernel<with_more_aovs(with_specular_parts(kStudio))>("studio, specular parts, AOVs"),
     make_kernel<kOpaque>("opaque"),
     make_kernel<kFull>("full"),
 };

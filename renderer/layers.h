@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace spectrace {
 
@@ -69,6 +71,19 @@ struct LayerSet {
   static constexpr unsigned bit(Layer layer) { return 1U << unsigned(layer); }
   unsigned bits = 0;  // public: a set is a template argument
 };
+
+/// Calls `visit` with each layer as a constant, in their order: for hot paths, which know their slots when
+/// they are compiled.
+template <LayerSet kLayers, typename Visit>
+constexpr void for_each_layer(const Visit& visit) {
+  const auto visit_one = [&]<std::size_t kIndex>() {
+    if constexpr (kLayers.has(Layer(kIndex))) visit(std::integral_constant<Layer, Layer(kIndex)>());
+  };
+  [&]<std::size_t... kIndices>(std::index_sequence<kIndices...>) {
+    (visit_one.template operator()<kIndices>(), ...);
+  }
+  (std::make_index_sequence<kLayerCount>());
+}
 
 inline constexpr LayerSet kBeautyLayer(Layer::kBeauty);
 inline constexpr LayerSet kLobeLayers(Layer::kDiffuse, Layer::kSpecular, Layer::kEmission,

@@ -10,6 +10,7 @@
 #include "renderer/area_light.h"
 #include "renderer/environment.h"
 #include "renderer/light_tree.h"
+#include "renderer/surface.h"
 
 namespace spectrace {
 
@@ -41,12 +42,19 @@ struct DirectionalLight {
 };
 using DeltaLight = std::variant<PointLight, SpotLight, DirectionalLight>;
 
+/// Shadow rays stop short of the light's surface by 16 steps of float rounding of their length.
+inline constexpr Float kShadowEnd = 1 - 16 * kFloatRounding;
+
 /// Radiance arriving at a point from one light; divide by `pdf`.
 struct LightSample {
   Vec3 wi;                   ///< unit, towards the light
   std::optional<Vec3> end;   ///< of the shadow ray; none: infinitely far
   SampledSpectrum radiance;  ///< delta lights: intensity / distance², irradiance
   Float pdf = 0;             ///< > 0; [1/sr], or 1 for a delta light. The choice of the light is not in it
+
+  [[nodiscard]] Ray shadow_ray(Vec3 origin) const {
+    return end ? Ray{origin, *end - origin, kShadowEnd} : Ray{origin, wi};
+  }
 };
 
 /// Immutable. Lights are numbered: area lights first, in order, then delta lights, then the environment.

@@ -35,6 +35,13 @@ LobeShares lobe_shares(const LobeValues& lobes) {
   return share;
 }
 
+/// Of a material that has one lobe.
+inline LobeShares lobe_shares(Lobe only) {
+  LobeShares share;
+  (only == Lobe::kDiffuse ? share.diffuse : share.fresnel) = SampledSpectrum(1);
+  return share;
+}
+
 /// Adds `radiance` to the lobes' layers of `sums`, which are those of `kLayers` in their order.
 template <LayerSet kLayers>
 void add_split(std::span<LaneSums> sums, const SampledSpectrum& radiance, const LobeShares& share,

@@ -17,8 +17,6 @@
 
 namespace spectrace {
 
-/// Shadow rays stop short of the light's surface by 16 steps of float rounding of their length.
-inline constexpr Float kShadowEnd = 1 - 16 * kFloatRounding;
 /// Roulette: survival lies in [1/20, 19/20]. Below, weights of survivors would grow without bound (hard case
 /// H10 above: measured albedos over 1 must still end).
 inline constexpr Float kMinSurvival = Float(0.05), kMaxSurvival = Float(0.95);
@@ -110,7 +108,7 @@ class PathTracer {
         const Float choice = scene_.lights.probability(scene_.lights.environment_index(), last_receiver_);
         weight = bsdf_mis_weight(environment->pdf(direction) * choice);
       }
-      add(beta_ * environment->radiance(direction, lambda_) * weight, Layer::kBackground);
+      add<Layer::kBackground>(beta_ * environment->radiance(direction, lambda_) * weight);
     }
   }
 
@@ -123,17 +121,18 @@ class PathTracer {
                                     point.position, point.normal_g);
         weight = bsdf_mis_weight(pdf * scene_.lights.probability(point.light, last_receiver_));
       }
-      add(beta_ * scene_.lights.emission(point.light, lambda_) * weight, Layer::kEmission);
+      add<Layer::kEmission>(beta_ * scene_.lights.emission(point.light, lambda_) * weight);
     }
   }
 
-  /// Radiance that goes to the first non-delta hit's lobes in its shares; seen without one, to `direct`
+  /// Radiance that goes to the first non-delta hit's lobes in its shares; seen without one, to `kDirect`
   /// (camera) or to the specular layer (through mirrors and glass).
-  void add(const SampledSpectrum& radiance, Layer direct) {
+  template <Layer kDirect>
+  void add(const SampledSpectrum& radiance) {
     add_to(Layer::kBeauty, radiance);
     if constexpr (kFeatures.lobe_layers) {
       if (depth_ == 0) {
-        add_to(direct, radiance);
+        add_to(kDirect, radiance);
       } else if (!has_share_) {
         add_to(Layer::kSpecular, radiance);
         if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
@@ -155,10 +154,11 @@ class PathTracer {
   void flush() {
     const LaneToXyz weights(lambda_);
     if constexpr (kFeatures.spectral_film) value_.lanes.template add<kLayers>(lambda_, sums_);
-    kLayers.for_each([&](Layer layer) {
-      const std::size_t slot = kLayers.slot(layer);
-      value_.valid &= weights.add(sums_[slot], value_.xyz[slot], is_signed(layer));
-      sums_[slot] = {};
+    for_each_layer<kLayers>([&](auto layer) {
+      LaneSums& sums = sums_[kLayers.slot(layer)];
+      if (sums.is_zero()) return;  // most layers of most paths
+      value_.valid &= weights.add(sums, value_.xyz[kLayers.slot(layer)], is_signed(layer));
+      sums = {};
     });
   }
 
@@ -187,12 +187,10 @@ class PathTracer {
     const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
     awaited_.radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
     if constexpr (kFeatures.lobe_layers) {
-      awaited_.share = has_share_
-                           ? share_
-                           : lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, vertex.at));
+      awaited_.share = has_share_ ? share_ : shares(vertex, wi);
       awaited_.is_direct = !has_share_;
     }
-    const Ray ray = shadow_ray(ray_origin(vertex.point, light->wi), *light);
+    const Ray ray = light->shadow_ray(ray_origin(vertex.point, light->wi));
     if constexpr (kFeatures.nested) {
       if (scene_.has_holes) {
         const Float visible = visibility_through_holes(ray, *light);
@@ -204,6 +202,11 @@ class PathTracer {
       }
     }
     shadow_ray_ = ray;
+  }
+
+  [[nodiscard]] LobeShares shares(const Vertex& vertex, Vec3 wi) const {
+    if (const std::optional<Lobe> only = scene_.only_lobe[vertex.point.material]) return lobe_shares(*only);
+    return lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, vertex.at));
   }
 
   [[nodiscard]] std::optional<LightSample> sample_light_source(const Vertex& vertex, std::uint32_t light,
@@ -231,10 +234,6 @@ class PathTracer {
     return {.lambda = lambda_, .uv = point.uv, .footprint = footprint, .v_sign = point.v_sign};
   }
 
-  static Ray shadow_ray(Vec3 origin, const LightSample& light) {
-    return light.end ? Ray{origin, *light.end - origin, kShadowEnd} : Ray{origin, light.wi};
-  }
-
   /// Share of the light that arrives through what lies between.
   [[nodiscard]] Float visibility_through_holes(Ray ray, const LightSample& light) const {
     Float visible = 1;
@@ -246,7 +245,7 @@ class PathTracer {
       visible *= pass_through(scene_.materials[point.material], dot(light.wi, point.normal_g) < 0,
                               shading_point(point, footprint));
       if (!(visible > 0)) return 0;
-      ray = shadow_ray(ray_origin(point, light.wi), light);
+      ray = light.shadow_ray(ray_origin(point, light.wi));
       if (!(dot(ray.direction, light.wi) > 0)) break;  // the offset has carried it past the light
     }
     return visible;
@@ -316,7 +315,7 @@ class PathTracer {
     if (!vertex.sides_agree(wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
       if (!has_share_ && !s->is_delta) {
-        share_ = lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, s->wi, vertex.at));
+        share_ = shares(vertex, s->wi);
         has_share_ = true;
         share_depth_ = depth_;
       }

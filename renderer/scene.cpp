@@ -154,12 +154,14 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   check_camera(description);
   std::vector<Material> materials;
   std::vector<Float> measured_cosines;
+  std::vector<std::optional<Lobe>> only_lobes;
   std::vector<std::string> digests;
   bool holes = false;
   const auto add_material = [&](const MaterialDesc& material) {
     materials.push_back(build_material(material));
     note_albedo(material.name, materials.back(), progress);
     measured_cosines.push_back(last_measured_cosine(materials.back()));
+    only_lobes.push_back(only_lobe(materials.back()));
     holes |= has_holes(materials.back());
     for_each_desc(material, [&](const MaterialDesc& part) { add_digest(part, material.name, digests); });
   };
@@ -192,6 +194,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
                .aovs = description.aovs,
                .materials = std::move(materials),
                .last_measured_cosine = std::move(measured_cosines),
+               .only_lobe = std::move(only_lobes),
                .has_images = images,
                .has_holes = holes,
                .geometry = std::move(shapes.geometry),

@@ -31,8 +31,9 @@ struct Scene {
   /// By material: seen from below this cosine a measured BRDF was not measured but extrapolated (hard case
   /// H1); 0 for others, which are never seen from there.
   std::vector<Float> last_measured_cosine;
-  bool has_images = false;  ///< some texture is an image: paths keep their footprints
-  bool has_holes = false;   ///< some material is masked: shadow rays ask what they meet
+  std::vector<std::optional<Lobe>> only_lobe;  ///< by material
+  bool has_images = false;                     ///< some texture is an image: paths keep their footprints
+  bool has_holes = false;                      ///< some material is masked: shadow rays ask what they meet
   Geometry geometry;
   Lights lights;
   Accel accel;

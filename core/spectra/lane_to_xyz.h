@@ -18,6 +18,11 @@ struct LaneSums {
   LaneSums& operator+=(const SampledSpectrum& radiance) {
     return add([](Float x) { return double(x); }, radiance);
   }
+  [[nodiscard]] bool is_zero() const {
+    bool zero = true;
+    for (const double x : v) zero &= x == 0;
+    return zero;
+  }
   /// Adds f of the lanes of `spectra`.
   template <typename F, typename... Spectra>
   LaneSums& add(const F& f, const Spectra&... spectra) {

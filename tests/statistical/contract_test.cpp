@@ -118,6 +118,10 @@ TEST_P(EveryBsdfContract, LobesSumToEvaluate) {
       ASSERT_GE(lobes.diffuse[lane], 0);
       ASSERT_GE(lobes.fresnel[lane], 0);
     }
+    if (const std::optional<Lobe> only = only_lobe(material())) {
+      ASSERT_TRUE((*only == Lobe::kDiffuse ? lobes.specular() : lobes.diffuse).is_zero());
+      ASSERT_TRUE(lobes.diffraction.is_zero() && lobes.residual.is_zero());
+    }
   }
 }
 
