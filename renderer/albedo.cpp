@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/albedo.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/overloaded.h"
@@ -87,6 +91,7 @@ std::array<Float, 4> draw(std::uint32_t i) {
 /// The mean over directions drawn by the BSDF itself.
 LobeAlbedo integrate(const Material& part, Float cosine) {
   const WhiteLight& light = white_light();
+  const std::optional<Lobe> only = only_lobe(part);
   const Float sine = std::sqrt(std::max(Float(0), 1 - cosine * cosine));
   LobeAlbedo albedo;
   for (std::uint32_t i = 0; i < kDraws; ++i) {
@@ -98,7 +103,8 @@ LobeAlbedo integrate(const Material& part, Float cosine) {
       const auto s = sample(part, wo, {lobe, {u, v}}, at);
       if (!s) continue;
       SampledSpectrum diffuse, specular = s->weight;
-      if (!s->is_delta) {
+      if (only == Lobe::kDiffuse) std::swap(diffuse, specular);
+      if (!only && !s->is_delta) {
         const LobeValues lobes = evaluate_lobes(part, wo, s->wi, at);
         diffuse = lobes.diffuse / s->pdf;
         specular = lobes.specular().clamped_at_zero() / s->pdf;
@@ -112,9 +118,9 @@ LobeAlbedo integrate(const Material& part, Float cosine) {
 
 std::vector<LobeAlbedo> tabulate(const Material& part, Float side) {
   std::vector<LobeAlbedo> table(kNodes);
-  for (std::size_t i = 0; i < kNodes; ++i) {
+  tbb::parallel_for(std::size_t(0), kNodes, [&](std::size_t i) {
     table[i] = integrate(part, side * std::max(kGrazing, Float(i) / Float(kNodes - 1)));
-  }
+  });
   return table;
 }
 

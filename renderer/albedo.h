@@ -21,7 +21,7 @@ struct LobeAlbedo {
 /// up where it is asked for. An anisotropic material's is its mean over the azimuth. Immutable.
 class AlbedoTables {
  public:
-  /// `materials` must stay where they are. Takes about a tenth of a second a material.
+  /// `materials` must stay where they are. Takes tens of milliseconds a material.
   explicit AlbedoTables(const std::vector<Material>& materials);
 
   /// `wo` in the shading frame, as for evaluate(); the wavelengths of `at` are of no concern.

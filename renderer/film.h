@@ -108,6 +108,9 @@ class Film {
       for (int x = tile.x0; x < tile.x1; ++x) visit(std::size_t(y) * std::size_t(width_) + std::size_t(x));
     }
   }
+  /// Visits each pixel with its index and PixelTotal.
+  template <typename Visit>
+  void for_each_total(const Visit& visit) const;
   /// What a tile consists of.
   [[nodiscard]] std::vector<LeafRange> blocks(std::size_t tile) const;
   [[nodiscard]] std::uint64_t samples_in_half_b(std::size_t tile) const;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/image/spectral_image.h"
@@ -19,14 +20,6 @@ constexpr std::array<const char*, 3> kRgb{"R", "G", "B"}, kXyzNames{"X", "Y", "Z
 /// Darker pixels than this share of the mean are not held to their own brightness.
 constexpr double kErrorFloor = 0.01;
 
-/// One pixel's sums, and how many samples they are of.
-struct PixelTotal {
-  std::array<double, slots::kCount> v{};
-  double valid = 0, valid_b = 0;
-
-  [[nodiscard]] Xyz three(std::size_t slot) const { return {v[slot], v[slot + 1], v[slot + 2]}; }
-};
-
 double over(double sum, double count) { return count > 0 ? sum / count : 0; }
 
 Rgb mean_rgb(const Xyz& sum, double count) {
@@ -37,6 +30,31 @@ Rgb mean_rgb(const Xyz& sum, double count) {
 double variance_of_mean(double sum, double sum_of_squares, double n) {
   if (n < 2) return 0;
   return std::max(0.0, sum_of_squares - sum * sum / n) / (n * (n - 1));
+}
+
+/// A channel's name in its pieces: put together only where it is asked for, not at every pixel.
+struct ChannelName {
+  std::string_view layer, suffix, channel;
+
+  [[nodiscard]] std::string text() const {
+    std::string text;
+    for (const std::string_view piece : {layer, suffix}) text += piece;
+    if (!text.empty()) text += '.';
+    return text += channel;
+  }
+};
+
+Rgb rgb_of_half_a(const PixelTotal& total, std::size_t moment) {
+  Xyz a = total.three(slots::xyz(Layer(moment)));
+  const Xyz b = total.three(slots::b_xyz(moment));
+  for (std::size_t c = 0; c < 3; ++c) a[c] -= b[c];
+  return mean_rgb(a, total.valid - total.valid_b);
+}
+Rgb rgb_of_half_b(const PixelTotal& total, std::size_t moment) {
+  return mean_rgb(total.three(slots::b_xyz(moment)), total.valid_b);
+}
+Rgb rgb_of(const PixelTotal& total, Layer layer) {
+  return mean_rgb(total.three(slots::xyz(layer)), total.valid);
 }
 
 /// Names the channels of a pixel, or fills them: the same walk for both, so that they cannot part.
@@ -55,36 +73,30 @@ class ChannelWalk {
       if (layout_.aovs.has(feature)) add_feature(feature);
     }
     const AovSet& aovs = layout_.aovs;
-    if (aovs.samples) add("samples.Z", [&] { return total_->valid; });
-    add("diagnostics.invalid", [&] { return total_->v[slots::kInvalid]; });
+    if (aovs.samples) add({"samples", "", "Z"}, [&] { return total_->valid; });
+    add({"diagnostics", "", "invalid"}, [&] { return total_->v[slots::kInvalid]; });
     if (aovs.extrapolated) {
-      add("diagnostics.extrapolated", [&] { return total_->v[slots::kExtrapolated]; });
+      add({"diagnostics", "", "extrapolated"}, [&] { return total_->v[slots::kExtrapolated]; });
     }
   }
 
  private:
   template <typename Value>
-  void add(const std::string& name, const Value& value) {
+  void add(const ChannelName& name, const Value& value) {
     if (names_ != nullptr) {
-      names_->push_back(name);
+      names_->push_back(name.text());
     } else {
       *out_++ = float(value());
     }
   }
   template <typename Value>
-  void add_rgb(const std::string& prefix, const Value& value) {
+  void add_rgb(std::string_view layer, std::string_view suffix, const Value& value) {
     const Rgb rgb = names_ != nullptr ? Rgb{} : value();
-    for (std::size_t c = 0; c < 3; ++c) add(prefix + kRgb[c], [&] { return rgb[c]; });
-  }
-  static std::string prefix(std::string_view layer) {
-    std::string text(layer);
-    if (!text.empty()) text += '.';
-    return text;
+    for (std::size_t c = 0; c < 3; ++c) add({layer, suffix, kRgb[c]}, [&] { return rgb[c]; });
   }
 
   void add_layer(Layer layer) {
-    add_rgb(prefix(layer_name(layer)),
-            [&] { return mean_rgb(total_->three(slots::xyz(layer)), total_->valid); });
+    add_rgb(layer_name(layer), "", [&] { return rgb_of(*total_, layer); });
   }
   /// What is not direct.
   void add_indirect() {
@@ -96,23 +108,18 @@ class ChannelWalk {
         return mean_rgb(sum, total_->valid);
       };
     };
-    add_rgb("diffuse_indirect.", rest(Layer::kDiffuse, Layer::kDiffuseDirect));
-    add_rgb("specular_indirect.", rest(Layer::kSpecular, Layer::kSpecularDirect));
+    add_rgb("diffuse_indirect", "", rest(Layer::kDiffuse, Layer::kDiffuseDirect));
+    add_rgb("specular_indirect", "", rest(Layer::kSpecular, Layer::kSpecularDirect));
   }
   void add_moments(std::size_t m) {
     const auto layer = Layer(m);
-    const std::string name(layer == Layer::kBeauty ? "beauty" : layer_name(layer));
+    const std::string_view name = layer == Layer::kBeauty ? "beauty" : layer_name(layer);
     if (layout_.aovs.halves) {
-      add_rgb(name + "_a.", [&] {
-        Xyz a = total_->three(slots::xyz(layer));
-        const Xyz b = total_->three(slots::b_xyz(m));
-        for (std::size_t c = 0; c < 3; ++c) a[c] -= b[c];
-        return mean_rgb(a, total_->valid - total_->valid_b);
-      });
-      add_rgb(name + "_b.", [&] { return mean_rgb(total_->three(slots::b_xyz(m)), total_->valid_b); });
+      add_rgb(name, "_a", [&] { return rgb_of_half_a(*total_, m); });
+      add_rgb(name, "_b", [&] { return rgb_of_half_b(*total_, m); });
     }
     if (layout_.aovs.variance) {
-      add_rgb(name + "_variance.", [&] {
+      add_rgb(name, "_variance", [&] {
         const Rgb sum = xyz_to_rgb(total_->three(slots::xyz(layer)));
         Rgb variance{};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -124,18 +131,16 @@ class ChannelWalk {
   }
   void add_feature(Feature feature) {
     const bool is_color = feature <= Feature::kAlbedo;
-    const std::string name(feature_name(feature));
     const std::size_t begin = feature_begin(feature);
-    const auto channels = [&](const std::string& layer, const auto& value) {
+    const auto channels = [&](std::string_view suffix, const auto& value) {
       for (std::size_t c = 0; c < feature_size(feature); ++c) {
-        const std::string channel = is_color ? kRgb[c] : feature == Feature::kDepth ? "Z" : kXyzNames[c];
-        add(layer + '.' + channel, [&] { return value(c); });
+        const char* const channel = is_color ? kRgb[c] : feature == Feature::kDepth ? "Z" : kXyzNames[c];
+        add({feature_name(feature), suffix, channel}, [&] { return value(c); });
       }
     };
-    channels(name,
-             [&](std::size_t c) { return over(total_->v[slots::kFeatures + begin + c], total_->valid); });
+    channels("", [&](std::size_t c) { return over(total_->v[slots::kFeatures + begin + c], total_->valid); });
     if (!layout_.aovs.feature_variance) return;
-    channels(name + "_variance", [&](std::size_t c) {
+    channels("_variance", [&](std::size_t c) {
       return variance_of_mean(total_->v[slots::kFeatures + begin + c],
                               total_->v[slots::kFeatureSquares + begin + c], total_->valid);
     });
@@ -149,10 +154,8 @@ class ChannelWalk {
 
 }  // namespace
 
-Image Film::resolve() const {
-  std::vector<std::string> names;
-  ChannelWalk(layout_, names).walk();
-  Image image(width_, height_, std::move(names));
+template <typename Visit>
+void Film::for_each_total(const Visit& visit) const {
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
     const std::size_t count = blocks(tile).size();
     const double taken = double(samples(tile)), taken_b = double(samples_in_half_b(tile));
@@ -164,31 +167,40 @@ Image Film::resolve() const {
       }
       total.valid = taken - total.v[slots::kInvalid];
       total.valid_b = taken_b - total.v[slots::kInvalidB];
-      ChannelWalk(layout_, total, &image.data[pixel * image.channels.size()]).walk();
+      visit(pixel, total);
     });
   }
+}
+
+Image Film::resolve() const {
+  std::vector<std::string> names;
+  ChannelWalk(layout_, names).walk();
+  Image image(width_, height_, std::move(names));
+  for_each_total([&](std::size_t pixel, const PixelTotal& total) {
+    ChannelWalk(layout_, total, &image.data[pixel * image.channels.size()]).walk();
+  });
   return image;
 }
 
 double Film::relative_error() const {
   SPECTRACE_CHECK(layout_.aovs.halves);
-  const Image image = resolve();
-  const auto index = [&](const char* name) { return image.find_channel(name).value(); };
-  const std::size_t mean = index("R"), a = index("beauty_a.R"), b = index("beauty_b.R");
-  const std::size_t stride = image.channels.size(), pixels = image.data.size() / stride;
-  const auto sum = [&](const auto& term) {
-    double total = 0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) total += term(&image.data[i * stride], c);
+  const double numbers = 3.0 * double(width_) * double(height_);
+  double sum = 0;
+  for_each_total([&](std::size_t, const PixelTotal& total) {
+    for (const double mean : rgb_of(total, Layer::kBeauty)) sum += mean;
+  });
+  const double floor = kErrorFloor * sum / numbers;
+  double squares = 0;
+  for_each_total([&](std::size_t, const PixelTotal& total) {
+    const auto moment = std::size_t(Layer::kBeauty);
+    const Rgb mean = rgb_of(total, Layer::kBeauty);
+    const Rgb a = rgb_of_half_a(total, moment), b = rgb_of_half_b(total, moment);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double d = (a[c] - b[c]) / 2;
+      if (d != 0) squares += d * d / (mean[c] * mean[c] + floor * floor);
     }
-    return total / double(3 * pixels);
-  };
-  const double floor =
-      kErrorFloor * sum([&](const float* pixel, std::size_t c) { return double(pixel[mean + c]); });
-  return std::sqrt(sum([&](const float* pixel, std::size_t c) {
-    const double m = double(pixel[mean + c]), d = (double(pixel[a + c]) - double(pixel[b + c])) / 2;
-    return d == 0 ? 0 : d * d / (m * m + floor * floor);
-  }));
+  });
+  return std::sqrt(squares / numbers);
 }
 
 Image Film::resolve_spectral(Layer layer) const {

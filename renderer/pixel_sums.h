@@ -67,4 +67,14 @@ struct PixelSums {
   }
 };
 
+/// Of all samples of a pixel, and how many of them count.
+struct PixelTotal {
+  std::array<double, slots::kCount> v{};
+  double valid = 0, valid_b = 0;
+
+  [[nodiscard]] std::array<double, 3> three(std::size_t slot) const {
+    return {v[slot], v[slot + 1], v[slot + 2]};
+  }
+};
+
 }  // namespace spectrace

@@ -34,6 +34,10 @@ AovSet gathered_aovs(const RenderOptions& options) {
   return aovs;
 }
 
+std::unique_ptr<const AlbedoTables> make_albedos(const std::vector<Material>& materials, int threads) {
+  return tbb::task_arena(threads).execute([&] { return std::make_unique<const AlbedoTables>(materials); });
+}
+
 }  // namespace
 
 FilmLayout film_layout(const Scene& scene, const AovSet& aovs) {
@@ -64,13 +68,13 @@ RenderSession::RenderSession(const Scene& scene, const RenderOptions& options, F
       needed_(required_features(scene, film.layout().aovs)),
       kernel_(kernel_for(needed_, options.kernel)),
       film_(std::move(film)),
-      albedos_(film_.layout().aovs.albedo ? std::make_unique<const AlbedoTables>(scene.materials) : nullptr),
+      threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()),
+      albedos_(film_.layout().aovs.albedo ? make_albedos(scene.materials, threads_) : nullptr),
       job_{.scene = scene,
            .seed = options.seed,
            .albedos = albedos_.get(),
            .kept_slots = film_.layout().kept_slots(),
-           .layout = film_.layout()},
-      threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()) {
+           .layout = film_.layout()} {
   SPECTRACE_CHECK(options.spp >= 1 && options.threads >= 0);
   // A pass that was left in its middle is taken up again.
   const auto [begin, end] = film_.ends();

@@ -89,9 +89,9 @@ class RenderSession {
   Features needed_;
   const Kernel& kernel_;
   Film film_;
+  int threads_;
   std::unique_ptr<const AlbedoTables> albedos_;
   RenderJob job_;
-  int threads_;
   LeafRange pass_;  // that is under way, if its count is not 0
   bool is_done_ = false;
   double seconds_ = 0, leaves_rendered_ = 0;  // by this process, leaves of the whole image
