@@ -19,7 +19,6 @@ struct FirstHit {
   Vec3 position;
   double depth = 0;  ///< length of the path to it, mirrors and glass included [m]
 };
-struct NoFirstHit {};
 
 /// Layers that spectral images are made of; others are sums of them or differences.
 inline constexpr std::array kSpectralLayers{Layer::kBeauty, Layer::kDiffuse, Layer::kSpecular};
@@ -42,6 +41,5 @@ struct LaneDeposits {
     }
   }
 };
-struct NoLaneDeposits {};
 
 }  // namespace spectrace

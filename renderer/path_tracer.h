@@ -48,7 +48,9 @@ class PathTracer {
       return false;
     }
     const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray_, *hit);
-    if constexpr (kFeatures.more_aovs) length_ += double(hit->t);
+    if constexpr (kFeatures.more_aovs) {
+      if (wants_first_hit()) value_.first_hit.depth += double(hit->t);
+    }
     add_emission(point, ray_.direction);
     if constexpr (kFeatures.textures) {
       if (scene_.has_images) {
@@ -65,8 +67,8 @@ class PathTracer {
   /// between.
   [[nodiscard]] const std::optional<Ray>& shadow_ray() const { return shadow_ray_; }
   void receive_light() {
-    add_to(Layer::kBeauty, awaited_.radiance);
-    if constexpr (kFeatures.lobe_layers) split(awaited_.radiance, awaited_.share, awaited_.is_direct);
+    add_to(Layer::kBeauty, awaited_);
+    if constexpr (kFeatures.lobe_layers) split(awaited_, awaited_lobes_.share, awaited_lobes_.is_direct);
   }
 
   [[nodiscard]] const PathValue<kFeatures>& finish() {
@@ -133,14 +135,14 @@ class PathTracer {
     if constexpr (kFeatures.lobe_layers) {
       if (depth_ == 0) {
         add_to(kDirect, radiance);
-      } else if (!has_share_) {
+      } else if (!split_.is_made) {
         add_to(Layer::kSpecular, radiance);
         if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
         if constexpr (kLayers.has(Layer::kSpecularDirect)) {
           if (depth_ == 1) add_to(Layer::kSpecularDirect, radiance);
         }
       } else {
-        split(radiance, share_, depth_ == share_depth_ + 1);
+        split(radiance, split_.share, depth_ == split_.depth + 1);
       }
     }
   }
@@ -185,17 +187,16 @@ class PathTracer {
     const Float pdf = light->pdf * choice->probability;
     if (!(pdf > 0)) return;  // a density Float cannot hold: BSDF sampling carries it alone
     const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
-    awaited_.radiance = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
+    awaited_ = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
     if constexpr (kFeatures.lobe_layers) {
-      awaited_.share = has_share_ ? share_ : shares(vertex, wi);
-      awaited_.is_direct = !has_share_;
+      awaited_lobes_ = {split_.is_made ? split_.share : shares(vertex, wi), !split_.is_made};
     }
     const Ray ray = light->shadow_ray(ray_origin(vertex.point, light->wi));
     if constexpr (kFeatures.nested) {
       if (scene_.has_holes) {
         const Float visible = visibility_through_holes(ray, *light);
         if (visible > 0) {
-          awaited_.radiance *= visible;
+          awaited_ *= visible;
           receive_light();
         }
         return;
@@ -291,7 +292,6 @@ class PathTracer {
       }
       seen.normal = vertex.frame.n;
       seen.position = vertex.point.position;
-      seen.depth = length_;
     }
   }
 
@@ -314,11 +314,7 @@ class PathTracer {
     const Vec3 wi = vertex.frame.to_world(s->wi);
     if (!vertex.sides_agree(wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
-      if (!has_share_ && !s->is_delta) {
-        share_ = shares(vertex, s->wi);
-        has_share_ = true;
-        share_depth_ = depth_;
-      }
+      if (!split_.is_made && !s->is_delta) split_ = {true, depth_, shares(vertex, s->wi)};
     }
     beta_ *= s->weight;
     if constexpr (kFeatures.transmission) radiance_scale_ *= s->radiance_scale;
@@ -361,9 +357,13 @@ class PathTracer {
     return true;
   }
 
-  /// Light that arrives unless something lies between.
-  struct AwaitedLight {
-    SampledSpectrum radiance;
+  /// The first non-delta hit parts what arrives from behind it by lobe.
+  struct LobeSplit {
+    bool is_made = false;
+    int depth = 0;
+    LobeShares share;
+  };
+  struct AwaitedLobes {
     LobeShares share;
     bool is_direct = false;
   };
@@ -376,7 +376,7 @@ class PathTracer {
   RayCone cone_;         // where ray_ begins; 0 unless some texture is an image
   Footprint footprint_;  // at the vertex at hand
   std::optional<Ray> shadow_ray_;
-  AwaitedLight awaited_;
+  SampledSpectrum awaited_;      // light that arrives unless something lies between
   bool terminate_next_ = false;  // once the light of this vertex has arrived
   std::uint32_t vertex_ = 0;     // surfaces met: what random numbers are named after
   int depth_ = 0;                // those of them that scattered the path: holes do not count
@@ -384,10 +384,8 @@ class PathTracer {
   Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
   std::array<LaneSums, kLayers.size()> sums_{};
   PathValue<kFeatures> value_;
-  bool has_share_ = false;      // a non-delta hit has split the path into lobes
-  int share_depth_ = 0;         // where
-  double length_ = 0;           // of the path from the camera
-  LobeShares share_;            // of everything that arrives from behind that hit
+  [[no_unique_address]] IfWanted<kFeatures.lobe_layers, LobeSplit> split_;
+  [[no_unique_address]] IfWanted<kFeatures.lobe_layers, AwaitedLobes> awaited_lobes_;
   bool last_was_delta_ = true;  // the camera counts as one: no light sample competes
   Float last_pdf_ = 0;
   Receiver last_receiver_;

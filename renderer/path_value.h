@@ -13,6 +13,12 @@
 
 namespace spectrace {
 
+/// Type of a member that only some kernels have.
+template <typename T>
+struct Unwanted {};
+template <bool kIsWanted, typename T>
+using IfWanted = std::conditional_t<kIsWanted, T, Unwanted<T>>;
+
 template <Features kFeatures>
 struct PathValue {
   static constexpr LayerSet kLayers = layer_set(kFeatures);
@@ -21,8 +27,8 @@ struct PathValue {
   bool valid = true;  ///< all of it finite and, where a layer is not signed, >= 0
   /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
   std::uint32_t measured = 0, extrapolated = 0;
-  std::conditional_t<kFeatures.more_aovs, FirstHit, NoFirstHit> first_hit;
-  std::conditional_t<kFeatures.spectral_film, LaneDeposits, NoLaneDeposits> lanes;
+  [[no_unique_address]] IfWanted<kFeatures.more_aovs, FirstHit> first_hit;
+  [[no_unique_address]] IfWanted<kFeatures.spectral_film, LaneDeposits> lanes;
 };
 
 }  // namespace spectrace
