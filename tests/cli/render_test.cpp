@@ -23,6 +23,15 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
+/// Those with something to separate.
+std::vector<std::string> measured_scene_names() {
+  std::vector<std::string> names = scene_names();
+  std::erase_if(names, [](const std::string& name) {
+    return read_text(kScenes / name).find("\"measured\"") == std::string::npos;
+  });
+  return names;
+}
+
 class EveryScene : public Program, public ::testing::WithParamInterface<std::string> {
  protected:
   /// The folder of scenes, in which this one has a film of a sixteenth of the pixels and the demo's measured
@@ -53,6 +62,7 @@ class EveryScene : public Program, public ::testing::WithParamInterface<std::str
 
   const std::string scene_ = "scenes/" + GetParam();
 };
+class MeasuredScene : public EveryScene {};
 
 TEST_P(EveryScene, IsTheSameBitForBitWithOneTwoAndSevenThreads) {
   const Image one = render("one.exr", {"--threads", "1"});
@@ -62,34 +72,66 @@ TEST_P(EveryScene, IsTheSameBitForBitWithOneTwoAndSevenThreads) {
   EXPECT_NE(render("other.exr", {"--seed", "1"}).data, one.data) << "the seed has no effect";
 }
 
-TEST_P(EveryScene, LayersSumToTheBeautyAndEveryPixelIsFinite) {
-  const Image image = render("out.exr", {});
+/// "R" of the beauty, "diffuse.R" of a layer.
+std::string channel_of(const std::string& layer, const char* channel) {
+  return layer.empty() ? channel : layer + "." + channel;
+}
+
+/// In every pixel: `whole` is the sum of those of `parts` that the image has, of which there must be
+/// `at_least`.
+void expect_sum(const Image& image, const std::string& whole, const std::vector<std::string>& parts,
+                std::size_t at_least) {
   constexpr double kRelative =
-      1e-5;  // the promise: interfaces say "to float rounding", the sum has four terms
+      1e-5;  // the promise: interfaces say "to float rounding", sums have 2 to 4 terms
   for (const char* channel : {"R", "G", "B"}) {
-    const auto index = [&](const std::string& layer) {
-      const auto c = image.find_channel(layer + channel);
-      EXPECT_TRUE(c.has_value()) << layer << channel;
-      return c.value_or(0);
-    };
-    const std::size_t beauty = index("");
-    const std::vector<std::size_t> layers{index("diffuse."), index("specular."), index("emission."),
-                                          index("background.")};
+    const auto sum_of_it = image.find_channel(channel_of(whole, channel));
+    ASSERT_TRUE(sum_of_it.has_value()) << whole;
+    std::vector<std::size_t> terms;
+    for (const std::string& part : parts) {
+      if (const auto found = image.find_channel(channel_of(part, channel))) terms.push_back(*found);
+    }
+    ASSERT_GE(terms.size(), at_least) << whole;
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
         double sum = 0, magnitude = 0;
-        for (const std::size_t layer : layers) {
-          sum += image.at(x, y, layer);
-          magnitude += std::abs(image.at(x, y, layer));
+        for (const std::size_t term : terms) {
+          sum += image.at(x, y, term);
+          magnitude += std::abs(image.at(x, y, term));
         }
         ASSERT_TRUE(std::isfinite(sum)) << x << ' ' << y;
-        ASSERT_LE(std::abs(image.at(x, y, beauty) - sum), kRelative * magnitude) << x << ' ' << y << channel;
+        ASSERT_LE(std::abs(image.at(x, y, *sum_of_it) - sum), kRelative * magnitude)
+            << whole << '.' << channel << " at " << x << ' ' << y;
       }
     }
   }
 }
 
+void expect_all_sums(const Image& image) {
+  expect_sum(image, "", {"diffuse", "specular", "emission", "background"}, 4);
+  expect_sum(image, "diffuse", {"diffuse_direct", "diffuse_indirect"}, 2);
+  expect_sum(image, "specular", {"specular_direct", "specular_indirect"}, 2);
+}
+
+TEST_P(EveryScene, AllAovsSumToTheBeautyAndEveryPixelIsFinite) {
+  const Image image = render("out.exr", {"--aovs", "all"});
+  expect_all_sums(image);
+}
+
+TEST_P(MeasuredScene, AllAovsSumToTheBeautyWhereItIsSeparatedInEveryWay) {
+  for (const char* model : {"sun", "fresnel", "diffraction", "residual"}) {
+    const Image image = render(
+        "out.exr", {"--aovs", "all", "--separate", model, "--cache", "kept", "--grid", kSmallGrid.back()});
+    expect_all_sums(image);
+    const bool has_parts = std::string(model) != "sun" && std::string(model) != "fresnel";
+    EXPECT_EQ(image.find_channel("specular_diffraction.R").has_value(), has_parts) << model;
+    if (!has_parts) continue;
+    expect_sum(image, "specular", {"specular_fresnel", "specular_diffraction", "specular_residual"}, 2);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, ::testing::ValuesIn(scene_names()),
+                         [](const auto& scene) { return scene.param.substr(0, scene.param.find('.')); });
+INSTANTIATE_TEST_SUITE_P(Scenes, MeasuredScene, ::testing::ValuesIn(measured_scene_names()),
                          [](const auto& scene) { return scene.param.substr(0, scene.param.find('.')); });
 
 using Render = Program;
