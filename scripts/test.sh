@@ -14,4 +14,7 @@ selection=("$@")
 if ((${#selection[@]} == 0)); then
   selection=(-LE long)
 fi
+if [[ " ${selection[*]} " == *" reader "* ]]; then
+  tests/spectral_reader.py --install --environment build/release/reader
+fi
 exec ctest --test-dir build/release --output-on-failure -j "$(nproc)" "${selection[@]}"
