@@ -49,6 +49,8 @@ constexpr std::array kNames{
     AovName{"feature_variance", with(&AovSet::feature_variance)},
     AovName{"samples", with(&AovSet::samples)},
     AovName{"extrapolated", with(&AovSet::extrapolated)},
+    AovName{"crypto_object", with(&AovSet::crypto_object)},
+    AovName{"crypto_material", with(&AovSet::crypto_material)},
 };
 
 }  // namespace

@@ -24,12 +24,14 @@ struct AovSet {
   bool variance = false;  ///< of the mean, of the same
   bool albedo = false;    ///< diffuse_albedo, specular_albedo, albedo: free of noise by wavelength
   bool normal = false, position = false, depth = false;
-  bool feature_variance = false;  ///< of those of the features above that are asked for
-  bool samples = false;           ///< how many were taken
-  bool extrapolated = false;      ///< vertices seen from beyond what was measured
+  bool feature_variance = false;                        ///< of those of the features above that are asked for
+  bool samples = false;                                 ///< how many were taken
+  bool extrapolated = false;                            ///< vertices seen from beyond what was measured
+  bool crypto_object = false, crypto_material = false;  ///< coverage by what is seen (renderer/matte.h)
 
   friend constexpr bool operator==(const AovSet&, const AovSet&) = default;
 
+  [[nodiscard]] constexpr bool any_matte() const { return crypto_object || crypto_material; }
   [[nodiscard]] constexpr bool any_feature() const { return albedo || normal || position || depth; }
   [[nodiscard]] constexpr bool has(Feature feature) const {
     switch (feature) {
@@ -46,9 +48,10 @@ struct AovSet {
 };
 
 inline constexpr std::array kAovFlags{
-    &AovSet::lobes,    &AovSet::specular_parts,   &AovSet::direct,  &AovSet::halves,
-    &AovSet::variance, &AovSet::albedo,           &AovSet::normal,  &AovSet::position,
-    &AovSet::depth,    &AovSet::feature_variance, &AovSet::samples, &AovSet::extrapolated};
+    &AovSet::lobes,         &AovSet::specular_parts,   &AovSet::direct,  &AovSet::halves,
+    &AovSet::variance,      &AovSet::albedo,           &AovSet::normal,  &AovSet::position,
+    &AovSet::depth,         &AovSet::feature_variance, &AovSet::samples, &AovSet::extrapolated,
+    &AovSet::crypto_object, &AovSet::crypto_material};
 [[nodiscard]] AovSet operator|(AovSet a, const AovSet& b);
 
 inline constexpr AovSet kNoAovs{};
@@ -63,7 +66,7 @@ inline constexpr AovSet kAllAovs = [] {
 /// All that denoisers want.
 inline constexpr AovSet kDenoiseAovs = [] {
   AovSet set = kAllAovs;
-  set.specular_parts = set.extrapolated = false;
+  set.specular_parts = set.extrapolated = set.crypto_object = set.crypto_material = false;
   return set;
 }();
 

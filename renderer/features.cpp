@@ -49,16 +49,16 @@ bool has_images(const Material& material) {
 }
 
 Features required_features(const Scene& scene, const AovSet& aovs) {
-  Features f{
-      .depth_of_field = scene.camera.has_lens(),
-      .indirect = scene.integrator.max_depth > 1,
-      .area_lights = scene.lights.area_count() > 0,
-      .delta_lights = scene.lights.delta_count() > 0,
-      .environment = scene.lights.environment().has_value(),
-      .instances = !scene.geometry.instances.empty(),
-      .lobe_layers = aovs.lobes,
-      .more_aovs = aovs.direct || aovs.halves || aovs.variance || aovs.any_feature() || aovs.extrapolated,
-      .spectral_film = scene.film.spectral.has_value()};
+  Features f{.depth_of_field = scene.camera.has_lens(),
+             .indirect = scene.integrator.max_depth > 1,
+             .area_lights = scene.lights.area_count() > 0,
+             .delta_lights = scene.lights.delta_count() > 0,
+             .environment = scene.lights.environment().has_value(),
+             .instances = !scene.geometry.instances.empty(),
+             .lobe_layers = aovs.lobes,
+             .more_aovs = aovs.direct || aovs.halves || aovs.variance || aovs.any_feature() ||
+                          aovs.any_matte() || aovs.extrapolated,
+             .spectral_film = scene.film.spectral.has_value()};
   for (const Shape& shape : scene.geometry.shapes) {
     const Material& material = scene.materials[shape.material];
     f.delta_lobes |= is_delta(material);

@@ -67,6 +67,7 @@ Film::Film(int width, int height, FilmLayout layout, SampleRange target)
       half_slots_(find_half_slots(slots_)),
       tiles_(make_tiles(width, height)),
       ends_(tiles_.size(), target.leaves().first) {
+  for (std::vector<MatteCounts>& counts : mattes_) counts.resize(tiles_.size());
   SPECTRACE_CHECK(target.first % kLeafSamples == 0 && target.first < target.last);
 }
 
@@ -122,6 +123,9 @@ void Film::add(std::size_t tile, LeafRange block, const TileSums& sums) {
     }
     ++from;
   });
+  for (std::size_t m = 0; m < kMatteKinds; ++m) {
+    if (!sums.mattes[m].empty()) mattes_[m][tile] = sum_of(mattes_[m][tile], sums.mattes[m]);
+  }
   ends_[tile] = block.end();
 }
 
@@ -145,7 +149,8 @@ std::span<const Film::Plane> Film::planes() const {
   return std::span(planes_).first(used);
 }
 
-bool Film::restore(std::vector<std::uint64_t> ends, std::vector<Plane> planes) {
+bool Film::restore(std::vector<std::uint64_t> ends, std::vector<Plane> planes,
+                   const std::array<MatteCounts, kMatteKinds>& mattes) {
   const LeafRange target = target_.leaves();
   const std::size_t pixels = std::size_t(width_) * std::size_t(height_);
   if (ends.size() != tiles_.size()) return false;
@@ -157,6 +162,13 @@ bool Film::restore(std::vector<std::uint64_t> ends, std::vector<Plane> planes) {
     if (plane.rows.size() != pixels * slots_.size()) return false;
     if (plane.bins.size() != pixels * layout_.bins_per_pixel()) return false;
   }
+  auto restored = mattes_;
+  for (std::size_t m = 0; m < kMatteKinds; ++m) {
+    auto parted = by_tiles(mattes[m], ends);
+    if (!parted) return false;
+    restored[m] = std::move(*parted);
+  }
+  mattes_ = std::move(restored);
   ends_ = std::move(ends);
   planes_ = std::move(planes);
   return true;
@@ -191,6 +203,11 @@ void Film::append(const Film& next) {
         sums.bins.insert(sums.bins.end(), bin, bin + std::ptrdiff_t(bins));
       });
       add(tile, blocks[b], sums);
+    }
+  }
+  for (std::size_t m = 0; m < kMatteKinds; ++m) {
+    for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+      mattes_[m][tile] = sum_of(mattes_[m][tile], next.mattes_[m][tile]);
     }
   }
 }

@@ -2,6 +2,7 @@
 // Sums by pixel, and the images they make; box filter: a sample counts for the pixel it falls in.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include "core/image/image.h"
 #include "renderer/aovs.h"
 #include "renderer/layers.h"
+#include "renderer/matte.h"
 #include "renderer/sample_range.h"
 #include "renderer/spectral_bins.h"
 
@@ -41,6 +43,7 @@ struct FilmLayout {
 struct TileSums {
   std::vector<double> rows;  ///< [pixel][kept slot]
   std::vector<float> bins;  ///< [pixel][layer][bin]: radiance [W·m⁻²·sr⁻¹·nm⁻¹] summed over samples
+  std::array<MatteCounts, kMatteKinds> mattes{};  ///< of those that the layout has
 };
 
 /// Sums of each tile over the samples it has so far, a range of leaves that begins at the same one for all
@@ -90,8 +93,11 @@ class Film {
   };
   [[nodiscard]] std::span<const Plane> planes() const;
   [[nodiscard]] const std::vector<std::uint64_t>& ends_by_tile() const { return ends_; }
-  /// What those two gave, of a film made alike. False, and nothing done, where they do not fit.
-  [[nodiscard]] bool restore(std::vector<std::uint64_t> ends, std::vector<Plane> planes);
+  /// Of all pixels, tile by tile.
+  [[nodiscard]] MatteCounts matte_counts(Matte matte) const;
+  /// What those three gave, of a film made alike. False, and nothing done, where they do not fit.
+  [[nodiscard]] bool restore(std::vector<std::uint64_t> ends, std::vector<Plane> planes,
+                             const std::array<MatteCounts, kMatteKinds>& mattes);
 
   [[nodiscard]] bool is_complete() const { return ends().first == target_.leaves().end(); }
   /// A later end, or an earlier one that is not passed yet. False, and nothing done, where samples beyond it
@@ -114,6 +120,13 @@ class Film {
   /// What a tile consists of.
   [[nodiscard]] std::vector<LeafRange> blocks(std::size_t tile) const;
   [[nodiscard]] std::uint64_t samples_in_half_b(std::size_t tile) const;
+  [[nodiscard]] std::size_t tile_of(std::uint32_t pixel) const;
+  /// Counts parted by tiles; nothing where they do not fit the film, whose tiles end at `ends`.
+  [[nodiscard]] std::optional<std::vector<MatteCounts>> by_tiles(
+      const MatteCounts& counts, const std::vector<std::uint64_t>& ends) const;
+  /// Fills the channels from `first_channel` on. `valid`: samples of each pixel that count.
+  void resolve_matte(Matte matte, const std::vector<double>& valid, std::size_t first_channel,
+                     Image& image) const;
 
   int width_, height_;
   FilmLayout layout_;
@@ -123,6 +136,8 @@ class Film {
   std::vector<Tile> tiles_;
   std::vector<std::uint64_t> ends_;
   std::vector<Plane> planes_;  // the n-th block of each tile
+  std::array<std::vector<MatteCounts>, kMatteKinds>
+      mattes_;  // by tile; of those the layout does not have, empty
 };
 
 }  // namespace spectrace

@@ -175,10 +175,22 @@ void Film::for_each_total(const Visit& visit) const {
 Image Film::resolve() const {
   std::vector<std::string> names;
   ChannelWalk(layout_, names).walk();
+  std::array<std::size_t, kMatteKinds> first_channels{};
+  for (const Matte matte : kMattes) {
+    first_channels[std::size_t(matte)] = names.size();
+    if (!has_matte(layout_.aovs, matte)) continue;
+    for (std::string& name : matte_channels(matte)) names.push_back(std::move(name));
+  }
   Image image(width_, height_, std::move(names));
+  std::vector<double> valid(layout_.aovs.any_matte() ? std::size_t(width_) * std::size_t(height_) : 0);
   for_each_total([&](std::size_t pixel, const PixelTotal& total) {
     ChannelWalk(layout_, total, &image.data[pixel * image.channels.size()]).walk();
+    if (!valid.empty()) valid[pixel] = total.valid;
   });
+  for (const Matte matte : kMattes) {
+    if (has_matte(layout_.aovs, matte))
+      resolve_matte(matte, valid, first_channels[std::size_t(matte)], image);
+  }
   return image;
 }
 

@@ -5,12 +5,20 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/spectra/lane_to_xyz.h"
 #include "renderer/albedo.h"
+#include "renderer/geometry.h"
 #include "renderer/layers.h"
 
 namespace spectrace {
+
+/// The first surface met that is no hole, mirrors and glass included.
+struct FirstSurface {
+  bool is_known = false;
+  std::uint32_t shape = 0, instance = kNone, material = 0;
+};
 
 struct FirstHit {
   bool is_known = false;
@@ -18,6 +26,13 @@ struct FirstHit {
   Vec3 normal;  ///< shading normal, world, on the viewer's side
   Vec3 position;
   double depth = 0;  ///< length of the path to it, mirrors and glass included [m]
+  FirstSurface surface;
+
+  /// After a way of `t`; whether it is a hole will be seen.
+  void come_to(double t, const FirstSurface& met) {
+    depth += t;
+    if (!surface.is_known) surface = met;
+  }
 };
 
 /// Layers that spectral images are made of; others are sums of them or differences.

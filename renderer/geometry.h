@@ -85,6 +85,7 @@ struct Shape {
   std::uint32_t material = 0;
   std::uint32_t first_light = kNone;  ///< area light of primitive 0; the others follow
   bool needs_uv = true;               ///< its material varies over the surface
+  std::uint32_t object = 0;           ///< which of the scene file's shapes it is, or a part of; 0 in groups
 };
 
 /// A group under one more transform.
@@ -92,6 +93,7 @@ struct Instance {
   std::uint32_t group = 0;
   Transform to_world, to_local;  ///< inverses of each other
   bool mirrored = false;         ///< is_mirroring(to_world)
+  std::uint32_t object = 0;      ///< which of the scene file's shapes it is
 };
 
 struct ShapeRange {

@@ -11,6 +11,7 @@
 #include "core/math/concentric_disk.h"
 #include "core/spectra/color.h"
 #include "renderer/flush_denormals.h"
+#include "renderer/matte.h"
 #include "renderer/path_tracer.h"
 #include "renderer/pixel_sums.h"
 
@@ -158,13 +159,15 @@ class Pack {
     }
   }
 
-  void finish(LeafSums<kFeatures>& sums) {
+  /// `mattes`: of the pixel; those that the layout does not have stay empty.
+  void finish(LeafSums<kFeatures>& sums, [[maybe_unused]] PixelMattes& mattes) {
     std::uint64_t sample = 0;
     for (auto& path : paths_) {
       const auto& value = path.finish();
       counts_.measured += value.measured;
       counts_.extrapolated += value.extrapolated;
       add_to<kFeatures>(sums, value, job_.layout, sample++ >= kLeafSamples / 2);
+      if constexpr (kFeatures.more_aovs) add_to_mattes(mattes, value);
     }
     paths_.clear();
   }
@@ -172,6 +175,18 @@ class Pack {
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
  private:
+  void add_to_mattes(PixelMattes& mattes, const PathValue<kFeatures>& value) const {
+    const FirstSurface& seen = value.first_hit.surface;
+    if (!value.valid || !seen.is_known) return;
+    const MatteNames& names = scene_.matte_names;
+    if (job_.layout.aovs.crypto_object) {
+      mattes[std::size_t(Matte::kObject)].add(seen.instance != kNone ? names.id_of_instance[seen.instance]
+                                                                     : names.id_of_shape[seen.shape]);
+    }
+    if (job_.layout.aovs.crypto_material) {
+      mattes[std::size_t(Matte::kMaterial)].add(names.id_of_material[seen.material]);
+    }
+  }
   void note(PacketMask active, bool coherent, bool is_shadow) {
     counts_.rays += std::uint64_t(std::popcount(active));
     if (log_ != nullptr) log_->push_back({rays_, active, coherent, is_shadow});
@@ -202,6 +217,8 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
   BlockSum<LeafSums<kFeatures>> block(leaf);
   sums.rows.clear();
   sums.bins.clear();
+  for (MatteCounts& counts : sums.mattes) counts.clear();
+  PixelMattes mattes;
   Pack<kFeatures> pack(job, log);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; ++x) {
@@ -213,12 +230,16 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
         for (std::uint64_t i = first; i < end; ++i) pack.add(Sampler(pixel, i, job.seed), image_x, image_y);
         pack.trace();
         leaf.clear();
-        pack.finish(leaf);
+        pack.finish(leaf, mattes);
         block.add(leaf);
       }
       const LeafSums<kFeatures>& sum = block.sum();
       for (const std::size_t slot : job.kept_slots) sums.rows.push_back(sum.row.v[slot]);
       sums.bins.insert(sums.bins.end(), sum.bins.begin(), sum.bins.end());
+      if constexpr (kFeatures.more_aovs) {
+        const auto film_pixel = std::uint32_t(y) * std::uint32_t(window.width) + std::uint32_t(x);
+        for (std::size_t m = 0; m < kMatteKinds; ++m) mattes[m].move_to(film_pixel, sums.mattes[m]);
+      }
     }
   }
   return pack.counts();

@@ -33,6 +33,7 @@ MaterialLibraries::Found MaterialLibraries::add(const MtlMaterial& mtl,
                                                 const std::filesystem::path& library) {
   const Found found{std::uint32_t(first_index_ + materials.size()), to_emission(mtl)};
   materials.push_back(to_material(mtl));
+  short_names.push_back(fmt::format("{}: {}", library.filename().string(), mtl.name));
   materials.back().name = fmt::format("{}: {}", library.string(), mtl.name);
   if (const std::vector<std::string> unheeded = without_effect(mtl); !unheeded.empty()) {
     progress_.note(fmt::format("{}: without effect: {}", materials.back().name, fmt::join(unheeded, ", ")));

@@ -31,6 +31,7 @@ class MaterialLibraries {
              const std::filesystem::path& obj_file);
 
   std::vector<MaterialDesc> materials;
+  std::vector<std::string> short_names;  ///< theirs, without folders: the same wherever the scene lies
 
  private:
   const std::vector<MtlMaterial>& library(const std::filesystem::path& file,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstring>
 #include <optional>
@@ -188,6 +189,42 @@ Header read_header(const std::string& text, const std::string& file) {
   return header;
 }
 
+// ---- Counts of mattes: three columns
+// --------------------------------------------------------------------------------
+
+std::string column(Matte matte, const char* name) { return fmt::format("{}_{}", matte_name(matte), name); }
+
+void write_matte(Matte matte, const MatteCounts& counts, TensorFile& out) {
+  std::vector<std::uint32_t> pixels, ids;
+  std::vector<std::uint64_t> samples;
+  for (const MatteCount& count : counts) {
+    pixels.push_back(count.pixel);
+    ids.push_back(count.id);
+    samples.push_back(count.samples);
+  }
+  out.add(to_tensor(column(matte, "pixels"), TensorType::kU32, {counts.size()}, pixels));
+  out.add(to_tensor(column(matte, "ids"), TensorType::kU32, {counts.size()}, ids));
+  out.add(to_tensor(column(matte, "samples"), TensorType::kU64, {counts.size()}, samples));
+}
+
+MatteCounts read_matte(Matte matte, const TensorFile& in) {
+  const TensorType u32[1] = {TensorType::kU32}, u64[1] = {TensorType::kU64};
+  const std::size_t any[1] = {0};
+  const auto pixels = from_tensor<std::uint32_t>(in.require(column(matte, "pixels"), u32, any));
+  const auto as_long = [&](const Tensor& tensor) -> const Tensor& {
+    if (tensor.shape[0] != pixels.size())
+      throw InputError(in.file_name(), "field " + tensor.name, "is of another length");
+    return tensor;
+  };
+  const auto ids = from_tensor<std::uint32_t>(as_long(in.require(column(matte, "ids"), u32, any)));
+  const auto samples = from_tensor<std::uint64_t>(as_long(in.require(column(matte, "samples"), u64, any)));
+  MatteCounts counts;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    counts.push_back({.pixel = pixels[i], .id = ids[i], .samples = samples[i]});
+  }
+  return counts;
+}
+
 std::string describe(SampleRange range) { return fmt::format("{}:{}", range.first, range.last); }
 
 }  // namespace
@@ -213,6 +250,9 @@ void write_partial(const fs::path& file, const PartialRender& partial) {
     if (plane.bins.empty()) continue;
     out.add(to_tensor(fmt::format("bins_{}", i), TensorType::kF32, {pixels, plane.bins.size() / pixels},
                       plane.bins));
+  }
+  for (const Matte matte : kMattes) {
+    if (has_matte(film.layout().aovs, matte)) write_matte(matte, film.matte_counts(matte), out);
   }
   out.write(file);
 }
@@ -240,8 +280,13 @@ PartialRender read_partial(const fs::path& file) {
       planes.back().bins = from_tensor<float>(in.require(fmt::format("bins_{}", i), f32, bin_shape));
     }
   }
-  if (!film.restore(from_tensor<std::uint64_t>(in.require("ends", u64, tiles)), std::move(planes))) {
-    throw InputError(name, "field ends", "does not fit the range of samples and the fields rows_*");
+  std::array<MatteCounts, kMatteKinds> mattes;
+  for (const Matte matte : kMattes) {
+    if (has_matte(film.layout().aovs, matte)) mattes[std::size_t(matte)] = read_matte(matte, in);
+  }
+  if (!film.restore(from_tensor<std::uint64_t>(in.require("ends", u64, tiles)), std::move(planes), mattes)) {
+    throw InputError(name, "field ends",
+                     "does not fit the range of samples and the fields rows_* and crypto_*");
   }
   return {.identity = std::move(header.identity),
           .metadata = std::move(header.metadata),

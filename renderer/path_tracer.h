@@ -49,7 +49,9 @@ class PathTracer {
     }
     const SurfacePoint point = surface_point<kQuery>(scene_.geometry, ray_, *hit);
     if constexpr (kFeatures.more_aovs) {
-      if (wants_first_hit()) value_.first_hit.depth += double(hit->t);
+      if (wants_first_hit()) {
+        value_.first_hit.come_to(double(hit->t), {false, hit->shape, hit->instance, point.material});
+      }
     }
     add_emission(point, ray_.direction);
     if constexpr (kFeatures.textures) {
@@ -284,6 +286,7 @@ class PathTracer {
   }
   void look_at([[maybe_unused]] const Vertex& vertex) {
     if constexpr (kFeatures.more_aovs) {
+      value_.first_hit.surface.is_known = true;
       if (is_delta(vertex.material)) return;
       FirstHit& seen = value_.first_hit;
       seen.is_known = true;

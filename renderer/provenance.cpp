@@ -13,7 +13,7 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
   const WavelengthRange range = scene.wavelengths.range();
   const CropWindow window = scene.film.window();
   const SampleRange samples = report.samples;
-  return {
+  Metadata metadata{
       {"spectrace:version", std::string(version())},
       {"spectrace:commit", std::string(commit())},
       {"spectrace:sceneFile", scene.file_name},
@@ -36,9 +36,12 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
       {"spectrace:invalidSamples", std::int64_t(report.invalid_samples)},
       {"spectrace:extrapolatedShare", report.extrapolated_share},
   };
+  add_matte_metadata(scene.matte_names, options.aovs, metadata);
+  return metadata;
 }
 
 Metadata spectral_provenance(Metadata of_image, const SpectralBins& bins) {
+  std::erase_if(of_image, [](const auto& entry) { return is_matte_metadata(entry.first); });
   of_image["spectralLayoutVersion"] = std::string("1.0");
   of_image["emissiveUnits"] = std::string("W.m^-2.sr^-1");
   of_image["spectrace:binMeasure"] =

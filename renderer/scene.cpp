@@ -148,6 +148,26 @@ WavelengthDistribution evenly(const SceneDesc& scene) {
   return WavelengthDistribution::at_centers(scene.range, spectral->bins.count);
 }
 
+/// A shape without a name is called by its place in the file.
+MatteNames name_mattes(const SceneDesc& scene, const Geometry& geometry,
+                       const std::vector<std::string>& materials) {
+  MatteNames mattes;
+  auto& objects = mattes.names[std::size_t(Matte::kObject)];
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+    const std::string& name = scene.shapes[i].name;
+    objects.push_back(name.empty() ? fmt::format("shapes/{}", i) : name);
+  }
+  mattes.names[std::size_t(Matte::kMaterial)] = materials;
+  std::vector<std::uint32_t> ids;
+  for (const std::string& name : objects) ids.push_back(matte_id(name));
+  for (const Shape& shape : geometry.shapes) {
+    mattes.id_of_shape.push_back(shape.object < ids.size() ? ids[shape.object] : 0);
+  }
+  for (const Instance& instance : geometry.instances) mattes.id_of_instance.push_back(ids[instance.object]);
+  for (const std::string& name : materials) mattes.id_of_material.push_back(matte_id(name));
+  return mattes;
+}
+
 }  // namespace
 
 Scene build_scene(const SceneDesc& description, Progress& progress) {
@@ -157,6 +177,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   std::vector<std::optional<Lobe>> only_lobes;
   std::vector<std::string> digests;
   bool holes = false;
+  std::vector<std::string> material_names;
   const auto add_material = [&](const MaterialDesc& material) {
     materials.push_back(build_material(material));
     note_albedo(material.name, materials.back(), progress);
@@ -165,15 +186,21 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
     holes |= has_holes(materials.back());
     for_each_desc(material, [&](const MaterialDesc& part) { add_digest(part, material.name, digests); });
   };
-  for (const MaterialDesc& material : description.materials) add_material(material);
+  for (const MaterialDesc& material : description.materials) {
+    add_material(material);
+    material_names.push_back(material.name);
+  }
   ShapeBuilder shapes(description, progress);
   shapes.build();
   for (const MaterialDesc& material : shapes.libraries.materials) add_material(material);
+  material_names.insert(material_names.end(), shapes.libraries.short_names.begin(),
+                        shapes.libraries.short_names.end());
   for (Shape& shape : shapes.geometry.shapes) shape.needs_uv = is_textured(materials[shape.material]);
   const bool images =
       std::any_of(materials.begin(), materials.end(), [](const Material& m) { return has_images(m); });
   DistantLights distant = build_lights(description, progress);
   Accel accel(shapes.geometry);
+  MatteNames matte_names = name_mattes(description, shapes.geometry, material_names);
   const bool visible = description.visible_sampling && !description.film.spectral;
   const auto observer = visible ? WavelengthDistribution::visible(description.range)
                                 : WavelengthDistribution::uniform(description.range);
@@ -197,6 +224,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
                .only_lobe = std::move(only_lobes),
                .has_images = images,
                .has_holes = holes,
+               .matte_names = std::move(matte_names),
                .geometry = std::move(shapes.geometry),
                .lights = std::move(lights),
                .accel = std::move(accel)};

@@ -11,6 +11,7 @@
 #include "renderer/camera.h"
 #include "renderer/geometry.h"
 #include "renderer/lights.h"
+#include "renderer/matte.h"
 #include "renderer/scene_desc.h"
 
 namespace spectrace {
@@ -34,6 +35,7 @@ struct Scene {
   std::vector<std::optional<Lobe>> only_lobe;  ///< by material
   bool has_images = false;                     ///< some texture is an image: paths keep their footprints
   bool has_holes = false;                      ///< some material is masked: shadow rays ask what they meet
+  MatteNames matte_names;
   Geometry geometry;
   Lights lights;
   Accel accel;

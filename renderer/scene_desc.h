@@ -85,6 +85,7 @@ struct ShapeDesc {
   std::string material{};  ///< name; ignored for instances
   Transform to_world{};
   std::optional<Spectrum> emission{};  ///< radiance [W·m⁻²·sr⁻¹·nm⁻¹], front side; not inside groups
+  std::string name{};                  ///< for mattes; empty: after its place in the scene
 };
 
 struct GroupDesc {

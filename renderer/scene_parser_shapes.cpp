@@ -207,6 +207,13 @@ MeshDesc parse_mesh(const JsonValue& json, const SceneNames& names) {
   return mesh;
 }
 
+/// Of any length but zero, where there is one.
+std::string parse_name(const JsonValue& json) {
+  std::string name = json.string();
+  if (json.is_string() && name.empty()) json.error("expected a name, got an empty string");
+  return name;
+}
+
 }  // namespace
 
 Transform parse_transform(const JsonValue& json) {
@@ -236,6 +243,7 @@ ShapeDesc parse_shape(const JsonValue& json, const SceneNames& names, ShapePlace
     return shape;  // recorded; without a type no key is known or unknown
   }
   shape.to_world = parse_transform(json.get("transform"));
+  if (!in_group) shape.name = parse_name(json.get("name"));
   if (type == "instance") {
     shape.kind = InstanceDesc{parse_reference(json.require("group"), "group", names.groups)};
     json.reject_unknown_keys();
@@ -266,11 +274,7 @@ ShapeDesc parse_shape(const JsonValue& json, const SceneNames& names, ShapePlace
 
 GroupDesc parse_group(const JsonValue& json, const SceneNames& names) {
   GroupDesc group;
-  const JsonValue name = json.require("name");
-  group.name = name.string();
-  if (name.is_string() && group.name.empty()) {
-    name.error("expected a name, got an empty string");
-  }
+  group.name = parse_name(json.require("name"));
   for (const JsonValue& element : json.require("shapes").elements()) {
     group.shapes.push_back(parse_shape(element, names, ShapePlace::kGroup));
   }

@@ -155,6 +155,7 @@ void ShapeBuilder::add_lights(Shape& shape, const Spectrum& emission) {
 
 void ShapeBuilder::place(Shape made, std::uint32_t material, const std::optional<Spectrum>& emission) {
   made.material = material;
+  made.object = object_;
   if (emission && emission->max_over(description_.range) > 0) {
     add_lights(made, *emission);
   }
@@ -216,10 +217,9 @@ void ShapeBuilder::add_shape(const ShapeDesc& shape) {
 
 ShapeRange ShapeBuilder::add_shapes(const std::vector<ShapeDesc>& shapes) {
   ShapeRange range{std::uint32_t(geometry.shapes.size()), 0};
-  for (const ShapeDesc& shape : shapes) {
-    if (!std::holds_alternative<InstanceDesc>(shape.kind)) {
-      add_shape(shape);
-    }
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    object_ = in_group_ ? 0 : std::uint32_t(i);
+    if (!std::holds_alternative<InstanceDesc>(shapes[i].kind)) add_shape(shapes[i]);
   }
   range.end = std::uint32_t(geometry.shapes.size());
   return range;
@@ -242,7 +242,7 @@ void ShapeBuilder::add_instance(const ShapeDesc& shape, const std::string& group
     progress_.note(fmt::format("{}: group \"{}\" is empty, nothing to hit", shape.where, group));
     return;
   }
-  geometry.instances.push_back({index, shape.to_world, *to_local, is_mirroring(shape.to_world)});
+  geometry.instances.push_back({index, shape.to_world, *to_local, is_mirroring(shape.to_world), object_});
 }
 
 void ShapeBuilder::build() {
@@ -257,10 +257,10 @@ void ShapeBuilder::build() {
   }
   in_group_ = false;
   geometry.top = add_shapes(description_.shapes);
-  for (const ShapeDesc& shape : description_.shapes) {
-    if (const auto* instance = std::get_if<InstanceDesc>(&shape.kind)) {
-      add_instance(shape, instance->group);
-    }
+  for (std::size_t i = 0; i < description_.shapes.size(); ++i) {
+    const ShapeDesc& shape = description_.shapes[i];
+    object_ = std::uint32_t(i);
+    if (const auto* instance = std::get_if<InstanceDesc>(&shape.kind)) add_instance(shape, instance->group);
   }
 }
 

@@ -48,6 +48,7 @@ class ShapeBuilder {
   const SceneDesc& description_;
   Progress& progress_;
   bool in_group_ = false;
+  std::uint32_t object_ = 0;  // which of the scene file's shapes is at hand
 };
 
 }  // namespace spectrace

@@ -26,6 +26,7 @@ ChannelGroup spectrum_group(const char* name, std::span<const SpectralChannel> f
 
 /// R, G, B of `layer` ("" for those without a dot) where the image has all three.
 bool make_colour(const Image& image, const std::string& layer, ChannelGroup& group) {
+  if (is_matte_layer(layer)) return false;
   const auto names = rgb_channels(layer);
   std::vector<std::size_t> indices;
   for (const std::string& name : names) {

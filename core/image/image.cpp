@@ -57,9 +57,15 @@ std::vector<std::string> Image::rgb_layers() const {
     const std::array<std::string, 3> rgb = rgb_channels(layer);
     const bool is_complete = std::all_of(
         rgb.begin(), rgb.end(), [&](const std::string& name) { return find_channel(name).has_value(); });
-    if (is_complete) layers.push_back(layer);
+    if (is_complete && !is_matte_layer(layer)) layers.push_back(layer);
   }
   return layers;
+}
+
+bool is_matte_layer(std::string_view layer) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  return layer.starts_with("crypto_") && layer.size() > 9 && is_digit(layer.back()) &&
+         is_digit(layer[layer.size() - 2]);
 }
 
 std::array<std::string, 3> rgb_channels(std::string_view layer) {

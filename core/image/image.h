@@ -41,6 +41,9 @@ struct Image {
   [[nodiscard]] std::vector<std::string> rgb_layers() const;
 };
 
+/// "crypto_object00" ...: ids and coverages (Cryptomatte), so that R, G, B are no colour.
+[[nodiscard]] bool is_matte_layer(std::string_view layer);
+
 /// The channels of an RGB layer: "diffuse" -> diffuse.R, diffuse.G, diffuse.B.
 [[nodiscard]] std::array<std::string, 3> rgb_channels(std::string_view layer);
 

@@ -15,6 +15,7 @@ constexpr int kWidth = 20, kHeight = 17;  // four tiles, three of them cut
 
 FilmLayout layout() {
   FilmLayout l{.layers = kBeautyLayer | kLobeLayers, .aovs = kDenoiseAovs, .bins = {}, .bin_layers = {}};
+  l.aovs.crypto_object = true;
   l.bins = SpectralBins{.range = {400, 700}, .count = 5};
   l.bin_layers = LayerSet(Layer::kBeauty, Layer::kDiffuse);
   return l;
@@ -32,6 +33,14 @@ TileSums leaf(const Film& film, std::size_t tile, std::uint64_t index) {
   for (float& x : sums.bins) x = float(std::exp2(exponent(random)));
   for (std::size_t p = 0; p < pixels; ++p) {
     sums.rows[p * film.layout().kept_slots().size()] = 0;  // nothing invalid
+  }
+  const Tile& place = film.tiles()[tile];
+  for (int y = place.y0; y < place.y1; ++y) {
+    for (int x = place.x0; x < place.x1; ++x) {
+      const auto pixel = std::uint32_t(y * kWidth + x);
+      const std::uint32_t id = matte_id("object " + std::to_string(random() % 3));
+      sums.mattes[std::size_t(Matte::kObject)].push_back({pixel, id, 1 + random() % kLeafSamples});
+    }
   }
   return sums;
 }
@@ -97,7 +106,8 @@ TEST(Film, GoesOnWhereItWasRestored) {
   half.reserve(4);
   half.add(1, {3, 1}, leaf(half, 1, 3));  // one tile is ahead
   Film restored(kWidth, kHeight, layout(), {0, 80});
-  ASSERT_TRUE(restored.restore(half.ends_by_tile(), {half.planes().begin(), half.planes().end()}));
+  ASSERT_TRUE(restored.restore(half.ends_by_tile(), {half.planes().begin(), half.planes().end()},
+                               {half.matte_counts(Matte::kObject), {}}));
   for (std::size_t tile = 0; tile < restored.tiles().size(); ++tile) {
     for (std::uint64_t i = restored.end(tile); i < 10; ++i) {
       restored.reserve(i + 1);
@@ -111,7 +121,8 @@ TEST(Film, RefusesToRestoreWhatDoesNotFit) {
   const Film whole = rendered({0, 56});
   const std::vector<Film::Plane> planes(whole.planes().begin(), whole.planes().end());
   const auto restores = [&](std::vector<std::uint64_t> ends, std::vector<Film::Plane> from) {
-    return Film(kWidth, kHeight, layout(), {0, 56}).restore(std::move(ends), std::move(from));
+    return Film(kWidth, kHeight, layout(), {0, 56})
+        .restore(std::move(ends), std::move(from), {whole.matte_counts(Matte::kObject), {}});
   };
   EXPECT_TRUE(restores(whole.ends_by_tile(), planes));
   EXPECT_FALSE(restores({7, 7, 7}, planes)) << "a tile too few";
@@ -120,6 +131,28 @@ TEST(Film, RefusesToRestoreWhatDoesNotFit) {
   std::vector<Film::Plane> cut = planes;
   cut[2].rows.pop_back();
   EXPECT_FALSE(restores(whole.ends_by_tile(), cut));
+}
+
+TEST(Film, RefusesToRestoreCountsThatDoNotFit) {
+  const Film whole = rendered({0, 56});
+  const auto restores = [&](const auto& change) {
+    MatteCounts counts = whole.matte_counts(Matte::kObject);
+    change(counts);
+    return Film(kWidth, kHeight, layout(), {0, 56})
+        .restore(whole.ends_by_tile(), {whole.planes().begin(), whole.planes().end()}, {counts, {}});
+  };
+  EXPECT_TRUE(restores([](MatteCounts&) {}));
+  EXPECT_TRUE(restores([](MatteCounts& counts) { counts.clear(); })) << "nothing was hit";
+  EXPECT_FALSE(restores([](MatteCounts& counts) { counts[5].pixel = kWidth * kHeight; })) << "no such pixel";
+  EXPECT_FALSE(restores([](MatteCounts& counts) { std::swap(counts[5], counts[6]); })) << "out of order";
+  EXPECT_FALSE(restores([](MatteCounts& counts) { counts[5] = counts[4]; })) << "twice";
+  EXPECT_FALSE(restores([](MatteCounts& counts) { counts[5].samples = 0; })) << "none";
+  EXPECT_FALSE(restores([](MatteCounts& counts) { counts[5].samples = 57; })) << "more than were taken";
+  EXPECT_FALSE(restores([](MatteCounts& counts) {
+    // Each of them fits, both together do not.
+    counts = {{0, 1, 30}, {0, 2, 27}};
+  }));
+  EXPECT_TRUE(restores([](MatteCounts& counts) { counts = {{0, 1, 30}, {0, 2, 26}}; }));
 }
 
 TEST(Film, MayGoOnToMoreSamplesUnlessTheLastLeafWasCut) {

@@ -27,7 +27,7 @@ class PartialRenders : public testing::Test {
   }
   PartialRender part(std::uint64_t first, int spp, std::uint64_t seed = 0) {
     scene_.emplace(build_scene(description_, progress_));
-    RenderSession session(*scene_, {.spp = spp, .seed = seed, .aovs = kDenoiseAovs, .first = first});
+    RenderSession session(*scene_, {.spp = spp, .seed = seed, .aovs = kAllAovs, .first = first});
     session.finish(progress_);
     return {identity_of(*scene_, seed), {{"spectrace:kernel", session.report().kernel}}, session.film()};
   }
@@ -75,6 +75,13 @@ TEST_F(PartialRenders, MergeInAnyOrderToTheBitsOfOneRender) {
   for (const auto& files : std::vector<std::vector<std::filesystem::path>>{{a, b, c}, {c, a, b}, {b, c, a}}) {
     expect_same(merge_partials(files).film, whole.film);
   }
+}
+
+TEST_F(PartialRenders, OfAnEmptySceneHoldNoCounts) {
+  description_.shapes.clear();
+  const PartialRender partial = part(0, 8);
+  EXPECT_TRUE(partial.film.matte_counts(Matte::kObject).empty());
+  expect_same(read_partial(written("a.partial", partial)).film, partial.film);
 }
 
 TEST_F(PartialRenders, AreNotMergedWhereTheyAreNotPartsOfOneImage) {
