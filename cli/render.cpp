@@ -16,6 +16,7 @@
 #include "cli/aovs_option.h"
 #include "cli/command.h"
 #include "cli/console_progress.h"
+#include "cli/effects_option.h"
 #include "cli/grid_option.h"
 #include "cli/output.h"
 #include "cli/render_loop.h"
@@ -50,6 +51,7 @@ struct Arguments {
   std::optional<TevAddress> tev;
   std::size_t texture_cache = kTextureCacheMiB;
   SceneSeparation separation;
+  EffectsOption effects;
   ProgressStyle progress = ProgressStyle::kAuto;
   bool strict = false;
 };
@@ -68,6 +70,7 @@ RenderOptions render_options(const Arguments& arguments, const Scene& scene) {
                         .seed = arguments.seed.value_or(scene.seed),
                         .threads = arguments.threads,
                         .aovs = arguments.aovs.value_or(scene.aovs),
+                        .forced = arguments.effects.forced_features(),
                         .seconds = arguments.seconds,
                         .relative_error = arguments.relative_error};
   if (!arguments.spp && (arguments.seconds > 0 || arguments.relative_error > 0)) options.spp = kMaxSpp;
@@ -110,7 +113,7 @@ Metadata header_of(const Scene& scene, const RenderOptions& options, const Rende
   return metadata;
 }
 
-void print_summary(const fs::path& file, const Film& film, const RenderReport& report) {
+void print_summary(const fs::path& file, const Scene& scene, const Film& film, const RenderReport& report) {
   fmt::print(
       "{}: {} x {}, {} samples a pixel, {:.2f} s on {} threads, {:.3g} million paths/s, {} invalid samples\n",
       file.string(), film.width(), film.height(), report.samples.count(), report.seconds, report.threads,
@@ -120,8 +123,11 @@ void print_summary(const fs::path& file, const Film& film, const RenderReport& r
     fmt::print("extrapolated: {:.2g} % of the measured values seen lie beyond the last measured elevation\n",
                100 * report.extrapolated_share);
   }
-  fmt::print("kernel: {}\neffects: {}\n", report.kernel, fmt::join(report.effects_used, ", "));
-  fmt::print("not simulated: {}\n", fmt::join(report.effects_skipped, "; "));
+  fmt::print("kernel: {}\nsimulated: {}\n", report.kernel, fmt::join(report.effects.used, "; "));
+  fmt::print("not simulated: {}\n", fmt::join(report.effects.skipped, "; "));
+  for (const std::string& approximation : scene.approximations) {
+    fmt::print("approximation {}\n", approximation);
+  }
 }
 
 ExitCode render_command(Arguments arguments) {
@@ -135,8 +141,14 @@ ExitCode render_command(Arguments arguments) {
   }
   // Roulette follows the throughput: with it paths of different materials would part.
   if (arguments.separation.paired) description.integrator.roulette_depth = description.integrator.max_depth;
+  arguments.effects.apply(description, progress);
   const Scene scene = build_scene(description, progress);
   const RenderOptions options = render_options(arguments, scene);
+  if (arguments.effects.only_list) {
+    progress.finish();
+    print_effects(scene, options.aovs, options.forced);
+    return ExitCode::kSuccess;
+  }
   RenderSession session(scene, options, film_to_start_with(scene, options, arguments, progress));
 
   const auto save = [&] {
@@ -161,7 +173,7 @@ ExitCode render_command(Arguments arguments) {
   write_images(arguments.output, session.film(), header_of(scene, options, session, arguments));
   progress.finish();
   const RenderReport report = session.report();
-  print_summary(arguments.output.file, session.film(), report);
+  print_summary(arguments.output.file, scene, session.film(), report);
   if (!is_done) {
     fmt::print("interrupted: {}\n",
                keeps_partial ? "--resume goes on" : "without --checkpoint, nothing to go on with");
@@ -262,6 +274,7 @@ void add_render(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   add_separation_options(app, arguments->separation);
+  add_effects_option(app, arguments->effects);
   app.add_option("--texture-cache", arguments->texture_cache,
                  "mebibytes of textures kept in memory; changes no bit of the image")
       ->check(CLI::Range(20, 1 << 24))

@@ -36,6 +36,7 @@ class RoughDielectric {
 
   [[nodiscard]] const Spectrum& eta() const { return eta_; }
   [[nodiscard]] const Ggx& ggx() const { return ggx_; }
+  [[nodiscard]] const std::optional<ThinFilm>& film() const { return film_; }
 
  private:
   /// The index beyond the interface over that on wo's side, and how many lanes differ and are alive: 1 stands

@@ -38,6 +38,29 @@ bool has_specular_parts(const Material& material) {
   return separated != nullptr && separated->has_specular_parts();
 }
 
+/// What a material that is seen calls for.
+Features features_of(const Material& material, const AovSet& aovs) {
+  Features f{.delta_lobes = is_delta(material),
+             .transmission = is_transmissive(material),
+             .textures = is_textured(material)};
+  for_each_part(material, [&](const Material& part) {
+    f.dispersion |= is_dispersive(part);
+    f.nested |= &part != &material;
+    f.specular_parts |= aovs.lobes && aovs.specular_parts && has_specular_parts(part);
+  });
+  return f;
+}
+
+/// ", by the material \"glass\"", or nothing where it is no material that calls for it.
+std::string whose(const Scene& scene, const AovSet& aovs, bool Features::*flag) {
+  for (const Shape& shape : scene.geometry.shapes) {
+    if (features_of(scene.materials[shape.material], aovs).*flag) {
+      return fmt::format(", by the material \"{}\"", scene.material_names[shape.material]);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 bool is_textured(const Material& material) {
@@ -60,24 +83,26 @@ Features required_features(const Scene& scene, const AovSet& aovs) {
                           aovs.any_matte() || aovs.extrapolated,
              .spectral_film = scene.film.spectral.has_value()};
   for (const Shape& shape : scene.geometry.shapes) {
-    const Material& material = scene.materials[shape.material];
-    f.delta_lobes |= is_delta(material);
-    f.transmission |= is_transmissive(material);
-    f.textures |= is_textured(material);
-    for_each_part(material, [&](const Material& part) {
-      f.dispersion |= is_dispersive(part);
-      f.nested |= &part != &material;
-      f.specular_parts |= aovs.lobes && aovs.specular_parts && has_specular_parts(part);
-    });
+    f = united(f, features_of(scene.materials[shape.material], aovs));
   }
   return f;
 }
 
-EffectList list_effects(const Features& needed, const Features& kernel) {
+Features united(const Features& a, const Features& b) {
+  Features f = a;
+  for (const FeatureInfo& info : kFeatureInfos) f.*info.flag |= b.*info.flag;
+  return f;
+}
+
+EffectList list_effects(const Scene& scene, const AovSet& aovs, const Features& forced,
+                        const Features& kernel) {
+  const Features needed = required_features(scene, aovs);
   EffectList list;
   for (const FeatureInfo& info : kFeatureInfos) {
     if (needed.*info.flag) {
-      list.used.emplace_back(info.name);
+      list.used.push_back(fmt::format("{}: {}{}", info.name, info.present, whose(scene, aovs, info.flag)));
+    } else if (forced.*info.flag) {
+      list.used.push_back(fmt::format("{}: {} (forced)", info.name, info.missing));
     } else {
       list.skipped.push_back(
           fmt::format("{}: {}{}", info.name, info.missing,

@@ -35,29 +35,38 @@ struct Features {
   friend constexpr bool operator==(const Features&, const Features&) = default;
 };
 
-/// For lists and messages: flag, name, and why it is left out.
+/// For lists, messages and the command line: flag, name there, name, and why it is used or left out.
 struct FeatureInfo {
   bool Features::*flag;
+  std::string_view id;
   std::string_view name;
+  std::string_view present;
   std::string_view missing;
 };
 inline constexpr std::array<FeatureInfo, 15> kFeatureInfos{{
-    {&Features::indirect, "indirect light", "max_depth is at most 1"},
-    {&Features::area_lights, "area lights", "no shape emits"},
-    {&Features::delta_lights, "point, spot and directional lights", "none in the scene"},
-    {&Features::environment, "environment", "none in the scene"},
-    {&Features::delta_lobes, "mirrors and smooth glass", "no such material"},
-    {&Features::transmission, "transmission", "no transmitting material"},
-    {&Features::dispersion, "dispersion", "no material's refraction varies with wavelength"},
-    {&Features::textures, "textures", "no material varies over its surface"},
-    {&Features::nested, "mixes, masks, normal maps, two-sided materials", "no material is made of others"},
-    {&Features::instances, "instances", "none in the scene"},
-    {&Features::lobe_layers, "layers by lobe", "not asked for"},
-    {&Features::specular_parts, "parts of the specular layer",
-     "not asked for, or no separated material that has them"},
-    {&Features::more_aovs, "AOVs beyond the lobes", "not asked for"},
-    {&Features::spectral_film, "spectral film", "not asked for"},
-    {&Features::depth_of_field, "depth of field", "the camera has no lens"},
+    {&Features::indirect, "indirect-light", "indirect light", "max_depth is above 1",
+     "max_depth is at most 1"},
+    {&Features::area_lights, "area-lights", "area lights", "a shape emits", "no shape emits"},
+    {&Features::delta_lights, "delta-lights", "point, spot and directional lights", "in the scene",
+     "none in the scene"},
+    {&Features::environment, "environment", "environment", "in the scene", "none in the scene"},
+    {&Features::delta_lobes, "delta-lobes", "mirrors and smooth glass", "in the scene", "no such material"},
+    {&Features::transmission, "transmission", "transmission", "light goes through a material",
+     "no transmitting material"},
+    {&Features::dispersion, "dispersion", "dispersion", "refraction varies with wavelength",
+     "no material's refraction varies with wavelength"},
+    {&Features::textures, "textures", "textures", "a material varies over its surface",
+     "no material varies over its surface"},
+    {&Features::nested, "nested-materials", "mixes, masks, normal maps, two-sided materials",
+     "a material is made of others", "no material is made of others"},
+    {&Features::instances, "instances", "instances", "in the scene", "none in the scene"},
+    {&Features::lobe_layers, "lobe-layers", "layers by lobe", "asked for", "not asked for"},
+    {&Features::specular_parts, "specular-parts", "parts of the specular layer",
+     "asked for, and a separated material has them", "not asked for, or no separated material that has them"},
+    {&Features::more_aovs, "more-aovs", "AOVs beyond the lobes", "asked for", "not asked for"},
+    {&Features::spectral_film, "spectral-film", "spectral film", "asked for", "not asked for"},
+    {&Features::depth_of_field, "depth-of-field", "depth of field", "the camera has a lens",
+     "the camera has no lens"},
 }};
 
 /// Everything on.
@@ -95,13 +104,18 @@ constexpr LayerSet layer_set(const Features& features) {
 
 /// What this scene and the AOVs asked for call for.
 [[nodiscard]] Features required_features(const Scene& scene, const AovSet& aovs);
+/// What either has.
+[[nodiscard]] Features united(const Features& a, const Features& b);
 
-/// "environment" ...; "dispersion: no material's refraction varies with wavelength" ...
+/// "environment: in the scene" ...; "dispersion: no material's refraction varies with wavelength" ...
 struct EffectList {
   std::vector<std::string> used, skipped;
 };
-/// `needed` are used, all others skipped; where `kernel` still asks whether the scene has one, it says so:
-/// "instances: none in the scene (the kernel checks for it all the same)".
-[[nodiscard]] EffectList list_effects(const Features& needed, const Features& kernel);
+/// What the scene calls for is used, by the first material that calls for it where it is materials that do;
+/// what is `forced` beside it likewise: "instances: none in the scene (forced)". All others are skipped;
+/// where `kernel` still asks whether the scene has one, it says so: "instances: none in the scene (the kernel
+/// checks for it all the same)".
+[[nodiscard]] EffectList list_effects(const Scene& scene, const AovSet& aovs, const Features& forced,
+                                      const Features& kernel);
 
 }  // namespace spectrace

@@ -76,6 +76,7 @@ std::string header_text(const PartialRender& partial) {
   json.member("program", partial.identity.program);
   json.member("scene_sha256", partial.identity.scene_sha256);
   write_names(json, "material_sha256s", partial.identity.material_sha256s);
+  write_names(json, "approximations", partial.identity.approximations);
   json.member("seed", std::to_string(partial.identity.seed));
   json.member("width", film.width());
   json.member("height", film.height());
@@ -166,6 +167,7 @@ Header read_header(const std::string& text, const std::string& file) {
   header.identity = {.program = root.require("program").string(),
                      .scene_sha256 = root.require("scene_sha256").string(),
                      .material_sha256s = read_texts(root.require("material_sha256s")),
+                     .approximations = read_texts(root.require("approximations")),
                      .seed = read_seed(root.require("seed"))};
   header.width = int(root.require("width").integer(1, 1, kMaxSide));
   header.height = int(root.require("height").integer(1, 1, kMaxSide));
@@ -225,6 +227,9 @@ MatteCounts read_matte(Matte matte, const TensorFile& in) {
   return counts;
 }
 
+std::string describe(const std::vector<std::string>& approximations) {
+  return approximations.empty() ? "exact" : fmt::format("{}", fmt::join(approximations, "; "));
+}
 std::string describe(SampleRange range) { return fmt::format("{}:{}", range.first, range.last); }
 
 }  // namespace
@@ -233,6 +238,7 @@ RenderIdentity identity_of(const Scene& scene, std::uint64_t seed) {
   return {.program = fmt::format("{} ({})", version(), commit()),
           .scene_sha256 = scene.sha256,
           .material_sha256s = scene.material_sha256s,
+          .approximations = scene.approximations,
           .seed = seed};
 }
 
@@ -301,6 +307,9 @@ void check_same_image(const PartialRender& partial, const fs::path& file, const 
     refuse("is of another scene, or the scene has changed since");
   if (found.material_sha256s != wanted.material_sha256s) {
     refuse("is of other materials, or their files have changed since");
+  }
+  if (found.approximations != wanted.approximations) {
+    refuse(fmt::format("is {}, not {}", describe(found.approximations), describe(wanted.approximations)));
   }
   if (found.seed != wanted.seed) {
     refuse(fmt::format("is of seed {}, not of seed {}", found.seed, wanted.seed));

@@ -19,6 +19,7 @@ struct RenderIdentity {
   std::string program;  ///< version and commit
   std::string scene_sha256;
   std::vector<std::string> material_sha256s;
+  std::vector<std::string> approximations;
   std::uint64_t seed = 0;
 };
 [[nodiscard]] RenderIdentity identity_of(const Scene& scene, std::uint64_t seed);

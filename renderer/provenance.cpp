@@ -31,8 +31,9 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
       {"spectrace:lambdaMaxNm", double(range.max_nm)},
       {"spectrace:units", std::string("linear sRGB of W.m^-2.sr^-1.nm^-1 weighted by CIE 1931 / 106.857 nm")},
       {"spectrace:kernel", report.kernel},
-      {"spectrace:effectsUsed", fmt::format("{}", fmt::join(report.effects_used, "; "))},
-      {"spectrace:effectsSkipped", fmt::format("{}", fmt::join(report.effects_skipped, "; "))},
+      {"spectrace:effectsUsed", fmt::format("{}", fmt::join(report.effects.used, "; "))},
+      {"spectrace:effectsSkipped", fmt::format("{}", fmt::join(report.effects.skipped, "; "))},
+      {"spectrace:approximations", fmt::format("{}", fmt::join(scene.approximations, "; "))},
       {"spectrace:invalidSamples", std::int64_t(report.invalid_samples)},
       {"spectrace:extrapolatedShare", report.extrapolated_share},
   };

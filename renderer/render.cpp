@@ -65,8 +65,8 @@ RenderSession::RenderSession(const Scene& scene, const RenderOptions& options)
 RenderSession::RenderSession(const Scene& scene, const RenderOptions& options, Film film)
     : scene_(scene),
       options_(options),
-      needed_(required_features(scene, film.layout().aovs)),
-      kernel_(kernel_for(needed_, options.kernel)),
+      kernel_(
+          kernel_for(united(required_features(scene, film.layout().aovs), options.forced), options.kernel)),
       film_(std::move(film)),
       threads_(options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency()),
       albedos_(film_.layout().aovs.albedo ? make_albedos(scene.materials, threads_) : nullptr),
@@ -169,12 +169,10 @@ void RenderSession::finish(Progress& progress) {
 }
 
 RenderReport RenderSession::report() const {
-  EffectList effects = list_effects(needed_, kernel_.features);
   const SampleRange target = film_.target();
   const double pixels = double(film_.width()) * double(film_.height());
   return {.kernel = std::string(kernel_.name),
-          .effects_used = std::move(effects.used),
-          .effects_skipped = std::move(effects.skipped),
+          .effects = list_effects(scene_, film_.layout().aovs, options_.forced, kernel_.features),
           .samples = {target.first, std::min(film_.ends().first * kLeafSamples, target.last)},
           .paths = std::uint64_t(std::llround(
               std::min(leaves_rendered_ * double(kLeafSamples), double(target.count())) * pixels)),

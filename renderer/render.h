@@ -25,6 +25,7 @@ struct RenderOptions {
   AovSet aovs = kLobeAovs;  ///< what the image holds beside the beauty, of which no bit changes
   std::string kernel{};     ///< name of a profile to use instead of the leanest that covers the scene; for
                             ///< tests: changes no bit of the image. One that does not cover it: InternalError
+  Features forced{};        ///< effects to simulate though the scene calls for none; changes no bit either
   std::uint64_t first = 0;  ///< samples [first, first + spp) are taken; a multiple of kLeafSamples
   double seconds = 0;       ///< > 0: stop when they have passed, if spp is not reached before
   double relative_error = 0;  ///< > 0: stop at this error of the image (Film::relative_error)
@@ -33,8 +34,7 @@ struct RenderOptions {
 /// What was simulated and what it cost.
 struct RenderReport {
   std::string kernel;  ///< name of the chosen profile
-  std::vector<std::string> effects_used,
-      effects_skipped;  ///< "environment", "dispersion: no dispersive material"
+  EffectList effects;
   SampleRange samples;  ///< that every pixel has
   std::uint64_t paths = 0;
   std::uint64_t rays = 0;             ///< shadow rays included, but for those through masks
@@ -86,7 +86,6 @@ class RenderSession {
 
   const Scene& scene_;
   RenderOptions options_;
-  Features needed_;
   const Kernel& kernel_;
   Film film_;
   int threads_;

@@ -173,13 +173,14 @@ MatteNames name_mattes(const SceneDesc& scene, const Geometry& geometry,
 Scene build_scene(const SceneDesc& description, Progress& progress) {
   check_camera(description);
   std::vector<Material> materials;
+  std::vector<std::string> material_names;
   std::vector<Float> measured_cosines;
   std::vector<std::optional<Lobe>> only_lobes;
   std::vector<std::string> digests;
   bool holes = false;
-  std::vector<std::string> material_names;
   const auto add_material = [&](const MaterialDesc& material) {
     materials.push_back(build_material(material));
+    material_names.push_back(material.name);
     note_albedo(material.name, materials.back(), progress);
     measured_cosines.push_back(last_measured_cosine(materials.back()));
     only_lobes.push_back(only_lobe(materials.back()));
@@ -188,7 +189,6 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   };
   for (const MaterialDesc& material : description.materials) {
     add_material(material);
-    material_names.push_back(material.name);
   }
   ShapeBuilder shapes(description, progress);
   shapes.build();
@@ -219,7 +219,9 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
                .spp = description.spp,
                .seed = description.seed,
                .aovs = description.aovs,
+               .approximations = description.approximations,
                .materials = std::move(materials),
+               .material_names = std::move(material_names),
                .last_measured_cosine = std::move(measured_cosines),
                .only_lobe = std::move(only_lobes),
                .has_images = images,

@@ -25,10 +25,12 @@ struct Scene {
   Camera camera;
   FilmDesc film;
   IntegratorDesc integrator;
-  int spp = 64;            ///< what the file asks for
-  std::uint64_t seed = 0;  ///< likewise
-  AovSet aovs;             ///< likewise
+  int spp = 64;                             ///< what the file asks for
+  std::uint64_t seed = 0;                   ///< likewise
+  AovSet aovs;                              ///< likewise
+  std::vector<std::string> approximations;  ///< what was left out of it, and how (renderer/approximations.h)
   std::vector<Material> materials;
+  std::vector<std::string> material_names;
   /// By material: seen from below this cosine a measured BRDF was not measured but extrapolated (hard case
   /// H1); 0 for others, which are never seen from there.
   std::vector<Float> last_measured_cosine;

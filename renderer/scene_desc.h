@@ -131,6 +131,7 @@ struct SceneDesc {
   std::vector<GroupDesc> groups;
   std::vector<ShapeDesc> shapes;
   std::vector<LightDesc> lights;
+  std::vector<std::string> approximations{};  ///< by approximate(): what was left out, and how
 };
 
 /// Reads and validates; throws InputError with every mistake of the file. Form: docs/scene-format.md,

@@ -60,6 +60,11 @@ Float ScalarTexture::at(Vec2 uv, const Footprint& over) const {
   return Float(value);
 }
 
+Float ScalarTexture::mean() const {
+  if (const auto* board = std::get_if<ScalarCheckerboard>(&v_)) return (board->even + board->odd) / 2;
+  return at({Float(0.5), Float(0.5)}, kWholeFootprint);
+}
+
 NormalTexture::NormalTexture(CachedImage bitmap) : bitmap_(std::move(bitmap)) {
   SPECTRACE_CHECK(bitmap_->channels() == 3);
 }

@@ -30,6 +30,8 @@ class ScalarTexture {
 
   /// Images are averaged over the footprint; checkerboards are not.
   [[nodiscard]] Float at(Vec2 uv, const Footprint& over = kPointFootprint) const;
+  /// Over all of the surface: checkerboards half and half.
+  [[nodiscard]] Float mean() const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Float>(v_); }
   /// Its lookups have footprints.
   [[nodiscard]] bool is_image() const { return std::holds_alternative<CachedImage>(v_); }
@@ -46,7 +48,7 @@ class NormalTexture {
   explicit NormalTexture(CachedImage bitmap);
   /// z > 0: where the mean over the footprint points inwards, or nowhere, it is flat.
   [[nodiscard]] Vec3 at(Vec2 uv, const Footprint& over = kPointFootprint) const;
-  [[nodiscard]] bool is_textured() const { return true; }  // that it is flat is not worth knowing
+  [[nodiscard]] bool is_textured() const { return is_image(); }
   [[nodiscard]] bool is_image() const { return bitmap_.has_value(); }
 
  private:

@@ -13,6 +13,8 @@ struct Footprint {
 };
 
 inline constexpr Footprint kPointFootprint{};
+/// All of an image.
+inline constexpr Footprint kWholeFootprint{.major = {1, 0}, .minor = {0, 1}};
 
 /// How many times as long as wide a footprint may be: what lookups along it cost is bounded so. Those who
 /// make footprints shorten them; what is cut off is left to the samples of the pixel.

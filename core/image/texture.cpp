@@ -10,11 +10,13 @@
 
 #include "core/base/error.h"
 #include "core/image/spectral_image.h"
+#include "core/spectra/cie_tables.h"
 #include "core/spectra/rgb_uplift.h"
 
 namespace spectrace {
 namespace {
 
+constexpr Float kMeanStepNm = 5;  // of a mean's spectrum: as fine as illuminants are tabulated
 constexpr NumberRange kRepeatRange{.min = 0, .max = 1e6, .min_open = true};
 
 bool is_odd(const Checkerboard& board, Vec2 uv) {
@@ -100,6 +102,32 @@ SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv, const
   }
   if (const auto* spectra = std::get_if<SpectralTexture>(&v_)) return spectra->sample(lambda, uv, over);
   return uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv, over)).sample(lambda);
+}
+
+Spectrum Texture::mean() const {
+  if (const auto* spectrum = std::get_if<Spectrum>(&v_)) return *spectrum;
+  constexpr std::array<Float, kLanes> kEven = [] {
+    std::array<Float, kLanes> pdf{};
+    pdf.fill(1);
+    return pdf;
+  }();
+  std::vector<Float> lambda_nm, values;
+  for (Float first = kCieMinNm; first <= kCieMaxNm; first += kMeanStepNm * kLanes) {
+    std::array<Float, kLanes> nm{};
+    for (std::size_t i = 0; i < kLanes; ++i) nm[i] = first + kMeanStepNm * Float(i);
+    const SampledWavelengths lambda(nm, kEven);
+    SampledSpectrum mean;
+    if (const auto* board = std::get_if<Checkerboard>(&v_)) {
+      mean = (board->even.sample(lambda) + board->odd.sample(lambda)) * Float(0.5);
+    } else {
+      mean = sample(lambda, {Float(0.5), Float(0.5)}, kWholeFootprint);
+    }
+    for (int i = 0; i < kLanes; ++i) {
+      lambda_nm.push_back(nm[std::size_t(i)]);
+      values.push_back(mean[i]);
+    }
+  }
+  return TabulatedSpectrum(std::move(lambda_nm), std::move(values));
 }
 
 Texture image_texture(const std::filesystem::path& file) {

@@ -59,6 +59,9 @@ class Texture {
   /// Images are averaged over the footprint; checkerboards are not.
   [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda, Vec2 uv,
                                        const Footprint& over = kPointFootprint) const;
+  /// One spectrum for all of the surface, at every 5 nm: checkerboards half and half, images over all of
+  /// them.
+  [[nodiscard]] Spectrum mean() const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Spectrum>(v_); }
   /// Its lookups have footprints.
   [[nodiscard]] bool is_image() const {

@@ -6,6 +6,7 @@
 
 #include "core/image/image.h"
 #include "materials/measured_tables.h"
+#include "renderer/features.h"
 #include "tests/cli/program.h"
 #include "tests/support/synthetic_measured.h"
 
@@ -70,6 +71,16 @@ TEST_P(EveryScene, IsTheSameBitForBitWithOneTwoAndSevenThreads) {
   EXPECT_EQ(render("two.exr", {"--threads", "2"}).data, one.data);
   EXPECT_EQ(render("seven.exr", {"--threads", "7"}).data, one.data);
   EXPECT_NE(render("other.exr", {"--seed", "1"}).data, one.data) << "the seed has no effect";
+}
+
+TEST_P(EveryScene, IsTheSameBitForBitByTheFullKernel) {
+  std::vector<std::string> everything;
+  for (const FeatureInfo& info : kFeatureInfos) {
+    everything.emplace_back("--force-effect");
+    everything.emplace_back(info.id);
+  }
+  EXPECT_EQ(render("lean.exr", {}).data, render("full.exr", everything).data);
+  EXPECT_EQ(std::get<std::string>(read_metadata(folder_ / "full.exr").at("spectrace:kernel")), "full");
 }
 
 /// "R" of the beauty, "diffuse.R" of a layer.
@@ -154,6 +165,41 @@ TEST_F(Render, HeaderSaysWhereTheImageCameFrom) {
   }
   EXPECT_EQ(std::get<std::int64_t>(metadata.at("spectrace:spp")), 3);
   EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:seed")), "5");
+}
+
+TEST_F(Render, ListsEffectsWithoutRendering) {
+  write_lambert_scene("ball.json");
+  const ProgramResult result = run({"ball.json", "--effects"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(result.says("simulated      indirect light: max_depth is above 1")) << result.output;
+  EXPECT_TRUE(result.says("not simulated  dispersion: ")) << result.output;
+  EXPECT_EQ(names(), (std::vector<std::string>{"ball.json"}));
+}
+
+TEST_F(Render, SaysWhatItLeftOut) {
+  write_lambert_scene("ball.json");
+  const ProgramResult exact = run({"ball.json", "-o", "exact.exr"});
+  const ProgramResult result =
+      run({"ball.json", "-o", "a.exr", "--forbid-effect", "indirect-light", "--forbid-effect", "dispersion"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(result.complains("dispersion is forbidden, but nothing in the scene has it")) << result.errors;
+  const Metadata metadata = read_metadata(folder_ / "a.exr");
+  const auto approximations = std::get<std::string>(metadata.at("spectrace:approximations"));
+  EXPECT_TRUE(approximations.starts_with("without indirect-light: ")) << approximations;
+  EXPECT_TRUE(result.says("approximation " + approximations)) << result.output;
+  EXPECT_EQ(std::get<std::string>(read_metadata(folder_ / "exact.exr").at("spectrace:approximations")), "");
+  EXPECT_EQ(run({"ball.json", "--forbid-effect", "instances"}).exit_code, 2);  // nothing stands for them
+}
+
+TEST_F(Render, PartsOfAnApproximationJoinNoOthers) {
+  write_lambert_scene("ball.json");
+  ASSERT_EQ(run({"ball.json", "-o", "a.exr", "--samples", "0:8"}).exit_code, 0);
+  ASSERT_EQ(
+      run({"ball.json", "-o", "b.exr", "--samples", "8:16", "--forbid-effect", "indirect-light"}).exit_code,
+      0);
+  const ProgramResult result = run({"merge", "a.partial", "b.partial", "-o", "c.exr"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(result.complains("without indirect-light")) << result.errors;
 }
 
 TEST_F(Render, SaysWhereAMeasurementReflectsTooMuchAndHowMuchOfItIsNone) {

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
+#include "core/base/error.h"
 #include "renderer/kernels.h"
 #include "tests/support/render_scenes.h"
 #include "tests/support/scene_zoo.h"
@@ -63,11 +67,40 @@ TEST(Kernels, TheLeanestIsChosen) {
   EXPECT_EQ(choose_kernel(features_of("glass")).name, "full");
 }
 
+Scene zoo_scene(const std::string& name) {
+  SilentProgress progress;
+  for (const NamedScene& entry : scene_zoo()) {
+    if (entry.name == name) return build_scene(entry.scene, progress);
+  }
+  throw InternalError("no scene " + name);
+}
+
+EffectList effects_of(const std::string& name, const Features& forced = {}) {
+  const Scene scene = zoo_scene(name);
+  const Features needed = united(required_features(scene, kLobeAovs), forced);
+  return list_effects(scene, kLobeAovs, forced, choose_kernel(needed).features);
+}
+
 TEST(Features, EveryEffectIsListedOnceWithItsReason) {
-  const EffectList list = list_effects(features_of("box"), choose_kernel(features_of("box")).features);
+  const EffectList list = effects_of("box");
   EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size());
-  EXPECT_EQ(list.used, (std::vector<std::string>{"indirect light", "area lights", "layers by lobe"}));
+  EXPECT_EQ(list.used, (std::vector<std::string>{"indirect light: max_depth is above 1",
+                                                 "area lights: a shape emits", "layers by lobe: asked for"}));
   EXPECT_EQ(list.skipped[0], "point, spot and directional lights: none in the scene");
+}
+
+TEST(Features, TheMaterialThatCallsForAnEffectIsNamed) {
+  const EffectList list = effects_of("dispersing glass");
+  const std::string start = "dispersion: refraction varies with wavelength, by the material \"";
+  EXPECT_TRUE(std::any_of(list.used.begin(), list.used.end(), [&](const std::string& effect) {
+    return effect.starts_with(start) && effect.size() > start.size() + 1;
+  }));
+}
+
+TEST(Features, WhatIsForcedIsSimulatedAndSaysWhy) {
+  const EffectList list = effects_of("box", {.instances = true});
+  EXPECT_EQ(std::count(list.used.begin(), list.used.end(), "instances: none in the scene (forced)"), 1);
+  EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size());
 }
 
 }  // namespace
