@@ -26,7 +26,8 @@ void add_compare(CLI::App& app, Action& chosen);
 void add_inspect(CLI::App& app, Action& chosen);
 void add_acquire(CLI::App& app, Action& chosen);
 void add_reproduce(CLI::App& app, Action& chosen);  ///< the paper's tables and figures
-void add_sheet(CLI::App& app, Action& chosen);  ///< contact sheet of images
-void add_bench(CLI::App& app, Action& chosen);  ///< speed of a scene
+void add_sheet(CLI::App& app, Action& chosen);      ///< contact sheet of images
+void add_bench(CLI::App& app, Action& chosen);      ///< speed of a scene
+void add_cost(CLI::App& app, Action& chosen);       ///< what accuracy costs in time
 
 }  // namespace spectrace::cli

@@ -25,6 +25,7 @@ constexpr const char* kExamples =
     "  spectrace inspect pearlescent.bsdf\n"
     "  spectrace reproduce epfl_rgb -o report\n"
     "  spectrace bench scenes/cornell_box.json\n"
+    "  spectrace cost scenes/cornell_box.json -o report\n"
     "\n"
     "Exit codes: 0 success, 1 images differ or a fit is unusable, 2 usage, 3 bad input, 4 internal error,\n"
     "5 interrupted.";
@@ -45,6 +46,7 @@ ExitCode run(int argc, const char* const* argv) {
   add_reproduce(app, chosen);
   add_sheet(app, chosen);
   add_bench(app, chosen);
+  add_cost(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -4,16 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
+
+#include "cli/report/colours.h"
 
 namespace spectrace::cli {
 namespace {
 
-// Told apart by the colour-blind too, and in grey (Okabe & Ito 2008).
-constexpr std::array<std::string_view, 6> kColours{"#999999", "#56b4e9", "#e69f00",
-                                                   "#009e73", "#cc79a7", "#0072b2"};
 constexpr double kHeight = 240, kLeft = 46, kTop = 44, kBottom = 130;  // pixels
 constexpr double kBarWidth = 7, kGroupGap = 10;
 
@@ -76,7 +74,7 @@ std::string svg(const BarChart& chart) {
         kLeft, width - 10, y_of(v), kLeft - 5, y_of(v) + 4, v);
   }
   for (std::size_t s = 0; s < chart.series.size(); ++s) {
-    const std::string_view colour = kColours[s % kColours.size()];
+    const std::string_view colour = kSeriesColours[s % kSeriesColours.size()];
     const double x = kLeft + 95 * double(s);
     text += fmt::format(
         "<rect x=\"{}\" y=\"24\" width=\"10\" height=\"10\" fill=\"{}\"/>"

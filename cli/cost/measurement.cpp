@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cost/measurement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/base/error.h"
+#include "renderer/render.h"
+
+namespace spectrace::cli {
+
+namespace {
+
+/// Of the budget: the reference's share. The error of a setting with as much noise as the exact one is then
+/// told from its own at a few times the samples.
+constexpr double kReferenceShare = 0.4;
+/// What loading, metrics and pictures take beside rendering.
+constexpr double kRenderShare = 0.85;
+constexpr int kProbeSpp = 4, kFewestPoints = 3, kMostPoints = 10;
+/// A pack of samples: fewer leave lanes empty, and would seem slower than they are.
+constexpr int kFirstSpp = int(kLeafSamples);
+constexpr std::uint64_t kReferenceSeed = 0x5eed;  // no setting's: their errors must not follow it
+
+Image beauty_of(const RenderResult& result) {
+  const std::array<std::string, 3> channels{"R", "G", "B"};
+  return result.image.select(channels, "render");
+}
+
+RenderResult render_at(const Scene& scene, int spp, std::uint64_t seed, const CostOptions& options) {
+  SilentProgress silent;
+  return render(scene, {.spp = spp, .seed = seed, .threads = options.threads, .aovs = kNoAovs}, silent);
+}
+
+/// The scene as it is, twice: what the two do not share tells noise from bias.
+struct Reference {
+  Image first, second, mean;
+
+  [[nodiscard]] IndependentPair pair() const { return {first, second}; }
+};
+
+Image mean_of(const Image& a, const Image& b) {
+  Image mean = a;
+  for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = (a.data[i] + b.data[i]) / 2;
+  return mean;
+}
+
+/// Renders at 8, 16, 32 ... samples while the time lasts, each with a seed of its own: points that shared
+/// samples would share their errors.
+CostRecord measure(const Setting& setting, const Scene& scene, const Reference& reference, double seconds,
+                   const CostOptions& options) {
+  CostRecord record;
+  record.knob = setting.knob;
+  record.name = setting.name;
+  record.title = setting.title();
+  Image before;
+  double spent = 0, last = 0;
+  for (int i = 0; i < kMostPoints; ++i) {
+    if (i >= kFewestPoints && spent + 2 * last > seconds) break;
+    const int spp = kFirstSpp << i;
+    const RenderResult result = render_at(scene, spp, scene.seed + std::uint64_t(i) + 1, options);
+    record.kernel = result.report.kernel;
+    before = std::exchange(record.picture, beauty_of(result));
+    last = result.report.seconds;
+    spent += last;
+    record.points.push_back({spp, last, compare_images(reference.mean, record.picture)});
+  }
+  const double epsilon = MetricOptions().epsilon;
+  record.bias = bias_rel_mse({before, record.picture}, reference.pair(), epsilon);
+  std::vector<ErrorPoint> points;
+  for (const CostPoint& point : record.points) {
+    points.push_back({double(point.spp), point.seconds, point.metrics.rel_mse});
+  }
+  record.model = fit_error_model(points, record.bias.value, noise_rel_mse(reference.pair(), epsilon).value);
+  return record;
+}
+
+}  // namespace
+
+CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>& settings,
+                       const CostOptions& options, Progress& progress) {
+  CostStudy study;
+  study.scene = description.file_name;
+  const double budget = options.budget_seconds * kRenderShare;
+  const auto total = double(settings.size() + 1);
+  progress.update("cost", 0, total);
+  Reference reference;
+  {
+    const Scene scene = build_scene(description, progress);
+    const RenderReport probe = render_at(scene, kProbeSpp, kReferenceSeed, options).report;
+    const double affordable = kReferenceShare * budget * kProbeSpp / std::max(probe.seconds, 1e-3);
+    study.reference_spp = std::max(64, int(std::min(affordable, 1e6)) / 16 * 16);
+    const RenderResult first = render_at(scene, study.reference_spp / 2, kReferenceSeed, options);
+    const RenderResult second = render_at(scene, study.reference_spp / 2, kReferenceSeed + 1, options);
+    reference = {beauty_of(first), beauty_of(second), mean_of(beauty_of(first), beauty_of(second))};
+    study.reference_seconds = first.report.seconds + second.report.seconds;
+    study.threads = first.report.threads;
+  }
+  study.reference = reference.mean;
+  study.width = study.reference.width;
+  study.height = study.reference.height;
+  study.reference_rel_mse = noise_rel_mse(reference.pair(), MetricOptions().epsilon).value;
+  const double each = (1 - kReferenceShare) * budget / double(settings.size());
+  for (const Setting& setting : settings) {
+    progress.update("cost", double(&setting - settings.data()) + 1, total);
+    SceneDesc changed = description;
+    try {
+      setting.apply(changed, progress);
+      const Scene scene = build_scene(changed, progress);
+      study.records.push_back(measure(setting, scene, reference, each, options));
+    } catch (const InputError& e) {
+      study.left_out.push_back(fmt::format("{}: {}", setting.title(), e.diagnostics().front().text()));
+    }
+  }
+  SPECTRACE_CHECK(!study.records.empty());
+  return study;
+}
+
+}  // namespace spectrace::cli

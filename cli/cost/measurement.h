@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a setting of a scene costs, and how far it is off.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/cost/settings.h"
+#include "core/image/error_model.h"
+#include "core/image/metrics.h"
+
+namespace spectrace::cli {
+
+/// One render of a setting against the reference.
+struct CostPoint {
+  int spp = 0;
+  double seconds = 0;
+  Metrics metrics;  ///< of the beauty
+};
+
+struct CostRecord {
+  std::string knob, name, title, kernel;
+  std::vector<CostPoint> points;  ///< by samples, at least two
+  Estimate bias;                  ///< of relMSE; may be below 0
+  ErrorModel model;
+  Image picture;  ///< of the last point: R, G, B
+};
+
+struct CostStudy {
+  std::string scene;
+  int width = 0, height = 0, threads = 0;
+  int reference_spp = 0;
+  double reference_seconds = 0;
+  double reference_rel_mse = 0;  ///< its own noise
+  Image reference;               ///< R, G, B
+  std::vector<CostRecord> records;
+  std::vector<std::string> left_out;  ///< settings that cannot be rendered, and why
+};
+
+struct CostOptions {
+  double budget_seconds = 120;  ///< of all renders together
+  int threads = 0;
+};
+
+/// A reference, then every setting at doubling numbers of samples, as many as the budget lets.
+[[nodiscard]] CostStudy measure_cost(const SceneDesc& scene, const std::vector<Setting>& settings,
+                                     const CostOptions& options, Progress& progress);
+
+}  // namespace spectrace::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cost/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "renderer/approximations.h"
+
+namespace spectrace::cli {
+
+namespace {
+
+bool has_measured(const SceneDesc& scene) {
+  bool any = false;
+  for (const MaterialDesc& material : scene.materials) {
+    for_each_desc(material, [&](const MaterialDesc& part) {
+      any = any || std::holds_alternative<MeasuredDesc>(part.kind);
+    });
+  }
+  return any;
+}
+
+Setting with_model(const std::string& model, SceneSeparation separation) {
+  separation.model = model;
+  return {"model", model, [separation](SceneDesc& scene, Progress& progress) {
+            if (!separate_materials(scene, separation, progress)) {
+              throw InputError(scene.file_name, "", "a measured material cannot be separated");
+            }
+          }};
+}
+
+Setting with_depth(int depth) {
+  return {"path depth", std::to_string(depth),
+          [depth](SceneDesc& scene, Progress&) { scene.integrator.max_depth = depth; }};
+}
+
+/// Paths carry the centres of so many bins and nothing else.
+Setting with_wavelengths(std::size_t count) {
+  return {"wavelengths", std::to_string(count), [count](SceneDesc& scene, Progress&) {
+            scene.film.spectral = SpectralFilmDesc{{scene.range, count, true}, false};
+          }};
+}
+
+Setting without(std::string_view effect) {
+  return {"without", std::string(effect),
+          [effect](SceneDesc& scene, Progress&) { (void)approximate(scene, effect); }};
+}
+
+}  // namespace
+
+std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& separation) {
+  std::vector<Setting> settings{{"exact", "exact", [](SceneDesc&, Progress&) {}}};
+  if (has_measured(scene)) {
+    for (const char* model : {"residual", "diffraction", "fresnel", "sun"}) {
+      settings.push_back(with_model(model, separation));
+    }
+  }
+  for (const int depth : {1, 2, 4, 8}) {
+    if (depth < scene.integrator.max_depth) settings.push_back(with_depth(depth));
+  }
+  if (!scene.film.spectral) {
+    for (const std::size_t count : {3, 8, 31, 64, 195}) settings.push_back(with_wavelengths(count));
+  }
+  for (const Approximation& approximation : approximations()) {
+    SceneDesc changed = scene;
+    // Path depth 1 is among the depths already.
+    const bool is_used = approximate(changed, approximation.effect);
+    if (is_used && approximation.effect != "indirect-light") {
+      settings.push_back(without(approximation.effect));
+    }
+  }
+  return settings;
+}
+
+}  // namespace spectrace::cli

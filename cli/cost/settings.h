@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ways to render a scene that trade accuracy for time.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/scene_separation.h"
+#include "core/base/progress.h"
+#include "renderer/scene_desc.h"
+
+namespace spectrace::cli {
+
+struct Setting {
+  std::string knob;  ///< "exact", "model", "path depth", "wavelengths", "without"
+  std::string name;  ///< of its place on the knob: "fresnel"; unique with the knob
+  /// What is changed of the scene. May throw InputError, as loading does.
+  std::function<void(SceneDesc&, Progress&)> apply;
+
+  [[nodiscard]] std::string title() const { return knob == name ? name : knob + " " + name; }
+};
+
+/// The scene as it is, first; then every step of every knob that the scene has. `separation`: grid and cache
+/// of separated models.
+[[nodiscard]] std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& separation);
+
+}  // namespace spectrace::cli

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// `spectrace cost`: what is said of settings whose bias is known.
+#include <cmath>
+#include <map>
+
+#include "core/base/json.h"
+#include "tests/cli/program.h"
+
+namespace spectrace::test {
+namespace {
+
+using Cost = Program;
+
+struct Figures {
+  double bias = 0, standard_error = 0;
+  std::int64_t points = 0;
+};
+
+std::map<std::string, Figures> settings_in(const std::filesystem::path& file) {
+  JsonDocument document = JsonDocument::load(file);
+  std::map<std::string, Figures> settings;
+  for (const JsonValue& setting : document.root().require("settings").elements()) {
+    const std::string name = setting.require("knob").string() + ' ' + setting.require("name").string();
+    settings[name] = {setting.require("bias_rel_mse").number(0),
+                      setting.require("bias_rel_mse_standard_error").number(0),
+                      std::int64_t(setting.require("points").elements().size())};
+  }
+  return settings;
+}
+
+TEST_F(Cost, TellsTheBiasOfWhatIsLeftOut) {
+  write_lambert_scene("ball.json");
+  const ProgramResult result = run({"cost", "ball.json", "-o", "report", "--budget", "1"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(result.says("report/index.html")) << result.output;
+  const auto settings = settings_in(folder_ / "report" / "cost.json");
+  for (const char* name : {"exact exact", "path depth 1", "wavelengths 8", "without environment"}) {
+    ASSERT_TRUE(settings.contains(name)) << name;
+    EXPECT_GE(settings.at(name).points, 3) << name;
+  }
+  // 4 standard errors: significance 6e-5. Nothing but the sky shines: without it all is lost, but for the
+  // share that epsilon takes of relMSE where pixels are dark.
+  const Figures exact = settings.at("exact exact"), dark = settings.at("without environment");
+  EXPECT_NEAR(exact.bias, 0, 4 * exact.standard_error);
+  EXPECT_NEAR(dark.bias, 1, 0.1);
+  // A convex ball under a sky: nothing arrives after the first bounce.
+  const Figures direct = settings.at("path depth 1");
+  EXPECT_NEAR(direct.bias, 0, 4 * direct.standard_error);
+}
+
+TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
+  write_lambert_scene("ball.json");
+  ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "1"}).exit_code, 0);
+  for (const char* file :
+       {"cost.csv", "cost.json", "effects.svg", "mape.svg", "psnr_db.svg", "rel_mse.svg"}) {
+    EXPECT_FALSE(read_text(folder_ / "report" / file).empty()) << file;
+  }
+  const std::string page = read_text(folder_ / "report" / "index.html");
+  for (const char* outside : {"src=\"http", "href=", "<link", "url("}) {
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  }
+  EXPECT_NE(page.find("data-label=\"exact, 8 samples"), std::string::npos);
+}
+
+TEST_F(Cost, RefusesWhatItCannotRead) {
+  expect_bad_input({"cost", "none.json", "-o", "report"}, "none.json");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
+}
+
+}  // namespace
+}  // namespace spectrace::test
