@@ -230,7 +230,6 @@ MatteCounts read_matte(Matte matte, const TensorFile& in) {
 std::string describe(const std::vector<std::string>& approximations) {
   return approximations.empty() ? "exact" : fmt::format("{}", fmt::join(approximations, "; "));
 }
-std::string describe(SampleRange range) { return fmt::format("{}:{}", range.first, range.last); }
 
 }  // namespace
 
@@ -322,43 +321,6 @@ void check_same_image(const PartialRender& partial, const fs::path& file, const 
                        height));
   }
   if (!(partial.film.layout() == layout)) refuse("holds other AOVs or wavelengths");
-}
-
-PartialRender merge_partials(const std::vector<fs::path>& files) {
-  SPECTRACE_CHECK(!files.empty());
-  struct Part {
-    fs::path file;
-    PartialRender partial;
-  };
-  std::vector<Part> parts;
-  for (const fs::path& file : files) {
-    parts.push_back({file, read_partial(file)});
-    const PartialRender& first = parts.front().partial;
-    check_same_image(parts.back().partial, file, first.identity, first.film.width(), first.film.height(),
-                     first.film.layout());
-    if (!parts.back().partial.film.is_complete()) {
-      throw InputError(file.string(), "", "is not complete: go on with it first (--resume)");
-    }
-  }
-  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-    return a.partial.film.target().first < b.partial.film.target().first;
-  });
-  PartialRender merged = std::move(parts.front().partial);
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    const SampleRange before = merged.film.target(), next = parts[i].partial.film.target();
-    if (next.first < before.last) {
-      throw InputError(parts[i].file.string(), "",
-                       fmt::format("samples {} overlap with samples {} of {}", describe(next),
-                                   describe(before), parts[i - 1].file.string()));
-    }
-    if (next.first > before.last) {
-      throw InputError(
-          parts[i].file.string(), "",
-          fmt::format("samples {} are missing before its first", describe({before.last, next.first})));
-    }
-    merged.film.append(parts[i].partial.film);
-  }
-  return merged;
 }
 
 }  // namespace spectrace

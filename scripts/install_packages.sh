@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian packages that building and testing need; does nothing where all are there.
+# Installs the Debian packages that building and testing need, and those named beside; nothing where all are there.
 # Why each: docs/dependencies.md.
 set -euo pipefail
 
@@ -10,6 +10,7 @@ packages=(
   libeigen3-dev libceres-dev libtbb-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libzstd-dev
   libgtest-dev libbenchmark-dev libvalijson-dev python3 fonts-dejavu-core
+  "$@"
 )
 
 missing=()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Install, build, test. Arguments go to ctest, for example: scripts/test.sh -L unit
-# The long tests stay out unless asked for (docs/validation.md): scripts/test.sh -L long
+# The long tests and those that start a Slurm stay out unless asked for (docs/validation.md): scripts/test.sh -L long
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,9 +12,12 @@ cmake --build --preset release
 
 selection=("$@")
 if ((${#selection[@]} == 0)); then
-  selection=(-LE long)
+  selection=(-LE 'long|slurm')
 fi
 if [[ " ${selection[*]} " == *" reader "* ]]; then
   tests/spectral_reader.py --install --environment build/release/reader
+fi
+if [[ " ${selection[*]} " == *" slurm "* ]]; then
+  scripts/install_packages.sh slurm-wlm munge
 fi
 exec ctest --test-dir build/release --output-on-failure -j "$(nproc)" "${selection[@]}"
