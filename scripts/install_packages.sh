@@ -6,7 +6,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
-  libembree-dev libopenexr-dev libopenimageio-dev libtinyobjloader-dev
+  libembree-dev libopenexr-dev libopenimageio-dev openimageio-tools libtinyobjloader-dev
   libeigen3-dev libceres-dev libtbb-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libzstd-dev
   libgtest-dev libbenchmark-dev libvalijson-dev python3 fonts-dejavu-core
