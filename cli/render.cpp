@@ -19,6 +19,7 @@
 #include "cli/effects_option.h"
 #include "cli/grid_option.h"
 #include "cli/output.h"
+#include "cli/quality.h"
 #include "cli/render_loop.h"
 #include "cli/render_output.h"
 #include "cli/scene_separation.h"
@@ -64,6 +65,17 @@ fs::path output_file(const Arguments& arguments) {
   return file;
 }
 
+/// What is asked for here takes the place of the scene's "quality".
+void set_quality(const Arguments& arguments, SceneDesc& scene, Progress& progress) {
+  if (arguments.spp || arguments.samples || arguments.seconds > 0 || arguments.relative_error > 0) {
+    scene.quality = {};
+    scene.quality.seconds = arguments.seconds;
+    scene.quality.relative_error = arguments.relative_error;
+  } else {
+    pick_setting(scene, arguments.separation, progress);
+  }
+}
+
 /// How many samples: what is asked for, as many as it takes where another end is, else the scene's.
 RenderOptions render_options(const Arguments& arguments, const Scene& scene) {
   RenderOptions options{.spp = arguments.spp.value_or(scene.spp),
@@ -71,9 +83,9 @@ RenderOptions render_options(const Arguments& arguments, const Scene& scene) {
                         .threads = arguments.threads,
                         .aovs = arguments.aovs.value_or(scene.aovs),
                         .forced = arguments.effects.forced_features(),
-                        .seconds = arguments.seconds,
-                        .relative_error = arguments.relative_error};
-  if (!arguments.spp && (arguments.seconds > 0 || arguments.relative_error > 0)) options.spp = kMaxSpp;
+                        .seconds = scene.quality.seconds,
+                        .relative_error = scene.quality.relative_error};
+  if (!arguments.spp && scene.quality.is_asked()) options.spp = kMaxSpp;
   if (arguments.samples) {
     options.first = arguments.samples->first;
     options.spp = int(arguments.samples->count());
@@ -118,6 +130,9 @@ void print_summary(const fs::path& file, const Scene& scene, const Film& film, c
       "{}: {} x {}, {} samples a pixel, {:.2f} s on {} threads, {:.3g} million paths/s, {} invalid samples\n",
       file.string(), film.width(), film.height(), report.samples.count(), report.seconds, report.threads,
       report.seconds > 0 ? double(report.paths) / report.seconds * 1e-6 : 0, report.invalid_samples);
+  if (scene.quality.is_asked()) {
+    fmt::print("quality {}: {} samples a pixel\n", text_of(scene.quality), report.samples.count());
+  }
   if (film.layout().aovs.halves) fmt::print("relative error: {:.3g}\n", film.relative_error());
   if (report.extrapolated_share > 0) {
     fmt::print("extrapolated: {:.2g} % of the measured values seen lie beyond the last measured elevation\n",
@@ -142,6 +157,7 @@ ExitCode render_command(Arguments arguments) {
   // Roulette follows the throughput: with it paths of different materials would part.
   if (arguments.separation.paired) description.integrator.roulette_depth = description.integrator.max_depth;
   arguments.effects.apply(description, progress);
+  set_quality(arguments, description, progress);
   const Scene scene = build_scene(description, progress);
   const RenderOptions options = render_options(arguments, scene);
   if (arguments.effects.only_list) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/image/metrics.h"
 #include "core/image/spectral_image.h"
 #include "core/spectra/color.h"
 #include "renderer/film.h"
@@ -16,9 +17,6 @@ namespace spectrace {
 namespace {
 
 constexpr std::array<const char*, 3> kRgb{"R", "G", "B"}, kXyzNames{"X", "Y", "Z"};
-
-/// Darker pixels than this share of the mean are not held to their own brightness.
-constexpr double kErrorFloor = 0.01;
 
 double over(double sum, double count) { return count > 0 ? sum / count : 0; }
 
@@ -201,7 +199,7 @@ double Film::relative_error() const {
   for_each_total([&](std::size_t, const PixelTotal& total) {
     for (const double mean : rgb_of(total, Layer::kBeauty)) sum += mean;
   });
-  const double floor = kErrorFloor * sum / numbers;
+  const double image_mean = sum / numbers, epsilon = kRelativeEpsilon * image_mean * image_mean;
   double squares = 0;
   for_each_total([&](std::size_t, const PixelTotal& total) {
     const auto moment = std::size_t(Layer::kBeauty);
@@ -209,7 +207,7 @@ double Film::relative_error() const {
     const Rgb a = rgb_of_half_a(total, moment), b = rgb_of_half_b(total, moment);
     for (std::size_t c = 0; c < 3; ++c) {
       const double d = (a[c] - b[c]) / 2;
-      if (d != 0) squares += d * d / (mean[c] * mean[c] + floor * floor);
+      if (d != 0) squares += d * d / (mean[c] * mean[c] + epsilon);
     }
   });
   return std::sqrt(squares / numbers);

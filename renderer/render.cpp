@@ -83,9 +83,9 @@ RenderSession::RenderSession(const Scene& scene, const RenderOptions& options, F
 
 RenderSession::~RenderSession() = default;
 
-/// As many leaves as there are already: so that there is always a whole image, and few passes. Its length
-/// changes no bit.
-LeafRange RenderSession::next_pass(std::uint64_t begin) const {
+/// As many leaves as there are already, so that there is always a whole image, and few passes; no more than
+/// the error asked for seems to take. Its length changes no bit.
+LeafRange RenderSession::next_pass(std::uint64_t begin) {
   const LeafRange target = film_.target().leaves();
   std::uint64_t most = std::min(target.end() - begin, std::max<std::uint64_t>(1, begin - target.first));
   if (options_.seconds > 0 && leaves_rendered_ > 0) {
@@ -93,11 +93,19 @@ LeafRange RenderSession::next_pass(std::uint64_t begin) const {
     if (affordable < 1) return {begin, 0};
     most = std::min(most, std::uint64_t(affordable));
   }
+  const auto has = double(begin - target.first);
+  if (options_.relative_error > 0 && has > 0) {
+    const double missing = std::ceil(trend_.samples_for(options_.relative_error) - has);
+    most = std::uint64_t(std::clamp(missing, 1.0, double(most)));
+  }
   return largest_block(begin, most);
 }
 
-bool RenderSession::is_good_enough() const {
-  return options_.relative_error > 0 && film_.relative_error() <= options_.relative_error;
+bool RenderSession::is_good_enough(std::uint64_t leaves) {
+  if (options_.relative_error <= 0) return false;
+  const double error = film_.relative_error();
+  trend_.add(double(leaves), error);
+  return error <= options_.relative_error;
 }
 
 bool RenderSession::advance(Clock::time_point until, const std::atomic<bool>& stop, Progress& progress) {
@@ -105,7 +113,8 @@ bool RenderSession::advance(Clock::time_point until, const std::atomic<bool>& st
   while (!is_done_) {
     if (pass_.count == 0) {
       const bool has_some = pass_.first > target.first;
-      const bool goes_on = pass_.first < target.end() && !(has_some && is_good_enough());
+      const bool goes_on =
+          pass_.first < target.end() && !(has_some && is_good_enough(pass_.first - target.first));
       if (goes_on) pass_ = next_pass(pass_.first);
       is_done_ = pass_.count == 0;
     } else if (render_pass(until, stop, progress)) {

@@ -12,6 +12,7 @@
 
 #include "core/base/progress.h"
 #include "core/image/image.h"
+#include "renderer/error_trend.h"
 #include "renderer/film.h"
 #include "renderer/kernels.h"
 #include "renderer/scene.h"
@@ -80,8 +81,8 @@ class RenderSession {
   [[nodiscard]] RenderReport report() const;
 
  private:
-  [[nodiscard]] LeafRange next_pass(std::uint64_t begin) const;
-  [[nodiscard]] bool is_good_enough() const;
+  [[nodiscard]] LeafRange next_pass(std::uint64_t begin);
+  [[nodiscard]] bool is_good_enough(std::uint64_t leaves);
   bool render_pass(Clock::time_point until, const std::atomic<bool>& stop, Progress& progress);
 
   const Scene& scene_;
@@ -93,6 +94,7 @@ class RenderSession {
   RenderJob job_;
   LeafRange pass_;  // that is under way, if its count is not 0
   bool is_done_ = false;
+  ErrorTrend trend_;  // of the image's error over the leaves it has, where one is asked for
   double seconds_ = 0, leaves_rendered_ = 0;  // by this process, leaves of the whole image
   std::atomic<std::uint64_t> rays_{0}, measured_{0}, extrapolated_{0};
 };

@@ -27,6 +27,7 @@ struct Scene {
   IntegratorDesc integrator;
   int spp = 64;                             ///< what the file asks for
   std::uint64_t seed = 0;                   ///< likewise
+  QualityDesc quality;                      ///< likewise
   AovSet aovs;                              ///< likewise
   std::vector<std::string> approximations;  ///< what was left out of it, and how (renderer/approximations.h)
   std::vector<Material> materials;

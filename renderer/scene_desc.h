@@ -116,6 +116,16 @@ struct EnvironmentDesc {         ///< constant radiance, or a latitude-longitude
 };
 using LightDesc = std::variant<PointLightDesc, SpotLightDesc, DirectionalLightDesc, EnvironmentDesc>;
 
+/// What a render is to reach, in place of a number of samples. At most one of the two is above 0.
+struct QualityDesc {
+  double relative_error = 0;  ///< of the image (Film::relative_error)
+  double seconds = 0;         ///< of rendering
+  std::filesystem::path
+      measurement{};  ///< cost.json of `spectrace cost`, which says by what setting; may be empty
+
+  [[nodiscard]] bool is_asked() const { return relative_error > 0 || seconds > 0; }
+};
+
 struct SceneDesc {
   std::string file_name;
   std::string sha256;  ///< of the JSON text
@@ -126,6 +136,7 @@ struct SceneDesc {
   IntegratorDesc integrator;
   int spp = 64;
   std::uint64_t seed = 0;
+  QualityDesc quality{};
   AovSet aovs = kLobeAovs;
   std::vector<MaterialDesc> materials;
   std::vector<GroupDesc> groups;

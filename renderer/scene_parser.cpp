@@ -77,6 +77,18 @@ void parse_sampler(const JsonValue& json, SceneDesc& scene) {
   json.reject_unknown_keys();
 }
 
+void parse_quality(const JsonValue& json, QualityDesc& quality) {
+  if (!json.exists()) return;
+  const JsonValue relative_error = json.get("relative_error"), seconds = json.get("seconds");
+  quality.relative_error = relative_error.number(0, kPositive);
+  quality.seconds = seconds.number(0, kPositive);
+  quality.measurement = parse_existing_file(json.get("measurement"));
+  json.reject_unknown_keys();
+  if (json.is_object() && relative_error.exists() == seconds.exists()) {
+    json.error("expected one of \"relative_error\" and \"seconds\"");
+  }
+}
+
 void parse_integrator(const JsonValue& json, IntegratorDesc& integrator) {
   integrator.max_depth = static_cast<int>(json.get("max_depth").integer(integrator.max_depth, 0, kMaxDepth));
   integrator.roulette_depth =
@@ -181,6 +193,7 @@ SceneDesc parse_scene(const std::string& text, const std::filesystem::path& file
     parse_aovs(root.get("aovs"), scene);
     parse_camera(root.require("camera"), scene.camera);
     parse_sampler(root.get("sampler"), scene);
+    parse_quality(root.get("quality"), scene.quality);
     parse_integrator(root.get("integrator"), scene.integrator);
     parse_materials(root.get("materials"), scene, names);
     for (const JsonValue& element : root.get("groups").elements()) {

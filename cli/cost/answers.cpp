@@ -9,13 +9,25 @@
 
 namespace spectrace::cli {
 
-std::optional<CheapestSetting> cheapest(const CostStudy& study, double rel_mse) {
-  std::optional<CheapestSetting> best;
+std::optional<Answer> cheapest(const CostStudy& study, double rel_mse) {
+  std::optional<Answer> best;
   for (const CostRecord& record : study.records) {
     const std::optional<double> samples = record.model.samples_for(rel_mse);
     if (!samples) continue;
     const double seconds = record.model.seconds(*samples);
     if (!best || seconds < best->seconds) best = {rel_mse, &record, *samples, seconds};
+  }
+  return best;
+}
+
+std::optional<Answer> best_within(const CostStudy& study, double seconds) {
+  std::optional<Answer> best;
+  for (const CostRecord& record : study.records) {
+    const ErrorModel& model = record.model;
+    const double samples = (seconds - model.start) / model.per_sample;
+    if (!(samples >= 1)) continue;
+    const double rel_mse = model.rel_mse(samples);
+    if (!best || rel_mse < best->rel_mse) best = {rel_mse, &record, samples, seconds};
   }
   return best;
 }

@@ -11,15 +11,19 @@
 
 namespace spectrace::cli {
 
-/// The setting that reaches an error soonest, by the fits.
-struct CheapestSetting {
-  double rel_mse = 0;  ///< to be reached
+/// A setting, and what the fits say of it.
+struct Answer {
+  double rel_mse = 0;
   const CostRecord* record = nullptr;
   double samples = 0, seconds = 0;
 };
 
-/// None where no setting reaches it.
-[[nodiscard]] std::optional<CheapestSetting> cheapest(const CostStudy& study, double rel_mse);
+/// The setting that reaches an error soonest, by the fits; none where no setting reaches it.
+[[nodiscard]] std::optional<Answer> cheapest(const CostStudy& study, double rel_mse);
+
+/// The setting that comes nearest in so many seconds, by the fits; never one that has no time for a sample,
+/// so there may be none.
+[[nodiscard]] std::optional<Answer> best_within(const CostStudy& study, double seconds);
 
 /// The root of the bias in relMSE [%], or what it lies below where it cannot be told from none: "< 0.3".
 [[nodiscard]] std::string bias_text(const Estimate& bias);

@@ -37,6 +37,7 @@ RenderResult render_at(const Scene& scene, int spp, std::uint64_t seed, const Co
 /// The scene as it is, twice: what the two do not share tells noise from bias.
 struct Reference {
   Image first, second, mean;
+  MetricOptions metrics;
 
   [[nodiscard]] IndependentPair pair() const { return {first, second}; }
 };
@@ -45,6 +46,17 @@ Image mean_of(const Image& a, const Image& b) {
   Image mean = a;
   for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = (a.data[i] + b.data[i]) / 2;
   return mean;
+}
+
+Reference reference_of(Image first, Image second) {
+  Image mean = mean_of(first, second);
+  double sum = 0;
+  for (const float value : mean.data) sum += double(value);
+  const double of_all = sum / double(mean.data.size());
+  MetricOptions metrics;
+  // Where all is dark, as good as any.
+  if (of_all > 0) metrics.epsilon = kRelativeEpsilon * of_all * of_all;
+  return {std::move(first), std::move(second), std::move(mean), metrics};
 }
 
 /// Renders at 8, 16, 32 ... samples while the time lasts, each with a seed of its own: points that shared
@@ -65,9 +77,9 @@ CostRecord measure(const Setting& setting, const Scene& scene, const Reference& 
     before = std::exchange(record.picture, beauty_of(result));
     last = result.report.seconds;
     spent += last;
-    record.points.push_back({spp, last, compare_images(reference.mean, record.picture)});
+    record.points.push_back({spp, last, compare_images(reference.mean, record.picture, reference.metrics)});
   }
-  const double epsilon = MetricOptions().epsilon;
+  const double epsilon = reference.metrics.epsilon;
   record.bias = bias_rel_mse({before, record.picture}, reference.pair(), epsilon);
   std::vector<ErrorPoint> points;
   for (const CostPoint& point : record.points) {
@@ -94,14 +106,15 @@ CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>&
     study.reference_spp = std::max(64, int(std::min(affordable, 1e6)) / 16 * 16);
     const RenderResult first = render_at(scene, study.reference_spp / 2, kReferenceSeed, options);
     const RenderResult second = render_at(scene, study.reference_spp / 2, kReferenceSeed + 1, options);
-    reference = {beauty_of(first), beauty_of(second), mean_of(beauty_of(first), beauty_of(second))};
+    reference = reference_of(beauty_of(first), beauty_of(second));
     study.reference_seconds = first.report.seconds + second.report.seconds;
     study.threads = first.report.threads;
   }
   study.reference = reference.mean;
+  study.epsilon = reference.metrics.epsilon;
   study.width = study.reference.width;
   study.height = study.reference.height;
-  study.reference_rel_mse = noise_rel_mse(reference.pair(), MetricOptions().epsilon).value;
+  study.reference_rel_mse = noise_rel_mse(reference.pair(), study.epsilon).value;
   const double each = (1 - kReferenceShare) * budget / double(settings.size());
   for (const Setting& setting : settings) {
     progress.update("cost", double(&setting - settings.data()) + 1, total);

@@ -32,6 +32,7 @@ struct CostStudy {
   int reference_spp = 0;
   double reference_seconds = 0;
   double reference_rel_mse = 0;  ///< its own noise
+  double epsilon = 0;            ///< of relMSE: kRelativeEpsilon of the reference
   Image reference;               ///< R, G, B
   std::vector<CostRecord> records;
   std::vector<std::string> left_out;  ///< settings that cannot be rendered, and why

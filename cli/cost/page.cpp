@@ -72,7 +72,7 @@ std::string answers_table(const CostStudy& study) {
       "<table><tr><th>to reach a relMSE of</th><th>the cheapest setting is</th><th>with samples</th>"
       "<th>in seconds</th><th>exact needs</th></tr>\n";
   for (const double error : errors_to_ask_for(study)) {
-    const std::optional<CheapestSetting> best = cheapest(study, error);
+    const std::optional<Answer> best = cheapest(study, error);
     if (!best) continue;
     const ErrorModel& exact = study.records.front().model;
     const std::optional<double> samples = exact.samples_for(error);

@@ -12,13 +12,18 @@
 
 namespace spectrace::cli {
 
+/// "exact", "model fresnel"
+[[nodiscard]] inline std::string title_of(const std::string& knob, const std::string& name) {
+  return knob == name ? name : knob + " " + name;
+}
+
 struct Setting {
   std::string knob;  ///< "exact", "model", "path depth", "wavelengths", "without"
   std::string name;  ///< of its place on the knob: "fresnel"; unique with the knob
   /// What is changed of the scene. May throw InputError, as loading does.
   std::function<void(SceneDesc&, Progress&)> apply;
 
-  [[nodiscard]] std::string title() const { return knob == name ? name : knob + " " + name; }
+  [[nodiscard]] std::string title() const { return title_of(knob, name); }
 };
 
 /// The scene as it is, first; then every step of every knob that the scene has. `separation`: grid and cache

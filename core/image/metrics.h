@@ -13,6 +13,9 @@ namespace spectrace {
 /// Width of SSIM's Gaussian window; also the smallest image that has an SSIM.
 inline constexpr int kSsimWindow = 11;
 
+/// An epsilon of relMSE that follows the image's scale: this times the square of the reference's mean.
+inline constexpr double kRelativeEpsilon = 1e-2;
+
 /// Constants of the metrics; every report prints them, since values differ between tools for them.
 struct MetricOptions {
   double data_range = 0;     ///< peak of PSNR and L of SSIM; 0 = the reference's maximum value (1 where
