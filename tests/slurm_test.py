@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds scripts/slurm to a real Slurm, started here: shards, one of them killed, and the merged image; separations.
+"""Holds scripts/slurm to a real Slurm, started here: shards (killed, warned, cancelled), the merged image; separations.
 
 Needs root and Debian's packages slurm-wlm and munge (`scripts/test.sh -L slurm` installs them); exits with 77 otherwise.
 """
@@ -20,7 +20,7 @@ from pathlib import Path
 SKIPPED = 77
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
 ROOT = Path(__file__).resolve().parent.parent
-SPP, SHARDS, KILLED = 1000, 4, 1
+SPP, SHARDS, KILLED, WARNED = 1000, 4, 1, 2
 TIMEOUT_S = 420
 
 
@@ -137,27 +137,60 @@ def small_scene(folder: Path) -> Path:
     return scene
 
 
+def submit(cluster: Cluster, scene: Path, out: Path) -> Path:
+    """Queues a render in shards, and returns the folder of its parts."""
+    print(cluster.run(str(ROOT / "scripts/slurm/render.sh"), str(scene), str(out), "--spp", str(SPP), "--shards",
+                      str(SHARDS), "--checkpoint", "0.5"))
+    return out.with_suffix(".parts")
+
+
+def wait_for_checkpoint(cluster: Cluster, parts: Path, task: int) -> None:
+    cluster.wait_for(lambda: (parts / f"{task}.partial").exists(), f"checkpoint of task {task}", 120)
+
+
+def array_of(cluster: Cluster) -> str:
+    return cluster.run("squeue", "-h", "--name=spectrace", "-o", "%F").split()[0]
+
+
+def assert_resumed(parts: Path, task: int, code: int) -> None:
+    log = (parts / f"{task}.log").read_text()
+    assert f"exit code {code}: queued again" in log, log
+    resumed = re.search(r"going on after (\d+) samples", log)
+    assert resumed and int(resumed[1]) > 0, log
+    print(f"task {task} ended with {code} and went on after {resumed[1]} samples")
+
+
 def test_render(cluster: Cluster, spectrace: Path) -> None:
     folder = cluster.folder / "render"
     folder.mkdir()
     scene, out = small_scene(folder), folder / "out.exr"
     whole = folder / "whole.exr"
     cluster.run(str(spectrace), str(scene), "--spp", str(SPP), "-o", str(whole))
-    print(cluster.run(str(ROOT / "scripts/slurm/render.sh"), str(scene), str(out), "--spp", str(SPP), "--shards",
-                      str(SHARDS), "--checkpoint", "0.5"))
-    part = folder / "out.parts" / f"{KILLED}.exr"
-    cluster.wait_for(lambda: part.with_suffix(".partial").exists(), "checkpoint of the task to be killed", 120)
-    victim = process_of(part)
+    parts = submit(cluster, scene, out)
+    wait_for_checkpoint(cluster, parts, KILLED)
+    victim = process_of(parts / f"{KILLED}.exr")
     assert victim is not None, "the task has ended before it could be killed"
     os.kill(victim, signal.SIGKILL)
+    wait_for_checkpoint(cluster, parts, WARNED)
+    # As --signal=B:TERM@120 does before a time limit, whose unit is a minute.
+    cluster.run("scancel", "--batch", "--signal=TERM", f"{array_of(cluster)}_{WARNED}")
     cluster.wait_for(out.exists, "merged image", TIMEOUT_S)
     cluster.wait_for(lambda: not cluster.run("squeue", "-h"), "empty queue")
-    log = (folder / "out.parts" / f"{KILLED}.log").read_text()
-    assert "exit code 137: queued again" in log, log
-    resumed = re.search(r"going on after (\d+) samples", log)
-    assert resumed and int(resumed[1]) > 0, log
-    print(f"task {KILLED} was killed and went on after {resumed[1]} samples")
+    assert_resumed(parts, KILLED, 137)
+    assert_resumed(parts, WARNED, 5)
     print(cluster.run(str(spectrace), "compare", str(whole), str(out), "--max", "*.mse=0"))
+
+
+def test_cancelled_is_not_queued_again(cluster: Cluster) -> None:
+    folder = cluster.folder / "cancelled"
+    folder.mkdir()
+    parts = submit(cluster, small_scene(folder), folder / "out.exr")
+    wait_for_checkpoint(cluster, parts, 0)
+    cluster.run("scancel", array_of(cluster))
+    cluster.wait_for(lambda: not cluster.run("squeue", "-h"), "empty queue after scancel", 120)
+    log = (parts / "0.log").read_text()
+    assert ": queued again" not in log, log
+    assert not (folder / "out.exr").exists()
 
 
 def test_bad_input_is_not_tried_again(cluster: Cluster) -> None:
@@ -196,6 +229,7 @@ def main() -> None:
     os.environ["SPECTRACE"] = str(spectrace)
     with tempfile.TemporaryDirectory(prefix="spectrace-slurm-") as folder, Cluster(Path(folder)) as cluster:
         test_render(cluster, spectrace)
+        test_cancelled_is_not_queued_again(cluster)
         test_bad_input_is_not_tried_again(cluster)
         test_separation(cluster, spectrace)
     print("passed")

@@ -12,6 +12,7 @@ scripts/slurm/render.sh SCENE.json OUT.exr --spp N --shards N [options] [-- opti
   --threads N       of each task (default 1)
   --checkpoint S    seconds between checkpoints, from which a task that died goes on (default 60)
   --sbatch OPTIONS  for every job, for example --sbatch "--partition=long --time=4:00:00"
+                    warned 120 s before such a time limit, a task writes a checkpoint and is queued again
   --wait            return when the merged image is written; exit code of the merge
 
 The parts lie in OUT.parts/ until they are merged: OUT.parts/N.partial and N.log of task N. The program is
@@ -52,7 +53,7 @@ export SPECTRACE="${SPECTRACE:-$(realpath -e "$here/../../build/release/cli/spec
 mkdir -p "$parts"
 
 array="$(sbatch --parsable "${sbatch[@]}" --job-name=spectrace --array="0-$((shards - 1))" --requeue \
-  --open-mode=append --cpus-per-task="$threads" --output="$parts/%a.log" \
+  --signal=B:TERM@120 --open-mode=append --cpus-per-task="$threads" --output="$parts/%a.log" \
   "$here/render_task.sh" "$scene" "$parts" "$spp" "$shards" "$checkpoint" "${options[@]}")"
 echo "render: job $array, $shards tasks, logs in $parts"
 sbatch "${wait[@]}" "${sbatch[@]}" --job-name=spectrace-merge --dependency="afterok:$array" --kill-on-invalid-dep=yes \
