@@ -17,6 +17,9 @@ fi
 if [[ " ${selection[*]} " == *" reader "* ]]; then
   tests/spectral_reader.py --install --environment build/release/reader
 fi
+if [[ " ${selection[*]} " == *" browser "* ]]; then
+  scripts/install_packages.sh chromium chromium-driver
+fi
 if [[ " ${selection[*]} " == *" slurm "* ]]; then
   scripts/install_packages.sh slurm-wlm munge
 fi

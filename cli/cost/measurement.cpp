@@ -7,7 +7,10 @@
 #include <array>
 #include <utility>
 
+#include "cli/report/exposure.h"
+#include "core/base/cost.h"
 #include "core/base/error.h"
+#include "core/image/color_error.h"
 #include "renderer/render.h"
 
 namespace spectrace::cli {
@@ -19,9 +22,13 @@ namespace {
 constexpr double kReferenceShare = 0.4;
 /// What loading, metrics and pictures take beside rendering.
 constexpr double kRenderShare = 0.85;
-constexpr int kProbeSpp = 4, kFewestPoints = 3, kMostPoints = 10;
+constexpr int kFewestPoints = 3, kMostPoints = 10;
+/// Where the budget has no time for three: a line goes through two.
+constexpr int kFewestPointsInHaste = 2;
+constexpr int kLeastReferenceSpp = 64;
 /// A pack of samples: fewer leave lanes empty, and would seem slower than they are.
 constexpr int kFirstSpp = int(kLeafSamples);
+constexpr int kProbeSpp = kFirstSpp, kPartSpp = kFirstSpp, kReferencePartSpp = 4 * kFirstSpp;
 constexpr std::uint64_t kReferenceSeed = 0x5eed;  // no setting's: their errors must not follow it
 
 Image beauty_of(const RenderResult& result) {
@@ -38,6 +45,7 @@ RenderResult render_at(const Scene& scene, int spp, std::uint64_t seed, const Co
 struct Reference {
   Image first, second, mean;
   MetricOptions metrics;
+  double exposure = 1;
 
   [[nodiscard]] IndependentPair pair() const { return {first, second}; }
 };
@@ -56,13 +64,14 @@ Reference reference_of(Image first, Image second) {
   MetricOptions metrics;
   // Where all is dark, as good as any.
   if (of_all > 0) metrics.epsilon = kRelativeEpsilon * of_all * of_all;
-  return {std::move(first), std::move(second), std::move(mean), metrics};
+  const double exposure = exposure_of(mean);
+  return {std::move(first), std::move(second), std::move(mean), metrics, exposure};
 }
 
 /// Renders at 8, 16, 32 ... samples while the time lasts, each with a seed of its own: points that shared
 /// samples would share their errors.
 CostRecord measure(const Setting& setting, const Scene& scene, const Reference& reference, double seconds,
-                   const CostOptions& options) {
+                   int fewest_points, const CostOptions& options) {
   CostRecord record;
   record.knob = setting.knob;
   record.name = setting.name;
@@ -70,14 +79,15 @@ CostRecord measure(const Setting& setting, const Scene& scene, const Reference& 
   Image before;
   double spent = 0, last = 0;
   for (int i = 0; i < kMostPoints; ++i) {
-    if (i >= kFewestPoints && spent + 2 * last > seconds) break;
+    if (i >= fewest_points && spent + 2 * last > seconds) break;
     const int spp = kFirstSpp << i;
     const RenderResult result = render_at(scene, spp, scene.seed + std::uint64_t(i) + 1, options);
     record.kernel = result.report.kernel;
     before = std::exchange(record.picture, beauty_of(result));
     last = result.report.seconds;
     spent += last;
-    record.points.push_back({spp, last, compare_images(reference.mean, record.picture, reference.metrics)});
+    record.points.push_back({spp, last, compare_images(reference.mean, record.picture, reference.metrics),
+                             mean_ciede2000(reference.mean, record.picture, reference.exposure)});
   }
   const double epsilon = reference.metrics.epsilon;
   record.bias = bias_rel_mse({before, record.picture}, reference.pair(), epsilon);
@@ -99,30 +109,51 @@ CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>&
   const auto total = double(settings.size() + 1);
   progress.update("cost", 0, total);
   Reference reference;
+  double seconds_a_sample = 0;
   {
     const Scene scene = build_scene(description, progress);
     const RenderReport probe = render_at(scene, kProbeSpp, kReferenceSeed, options).report;
-    const double affordable = kReferenceShare * budget * kProbeSpp / std::max(probe.seconds, 1e-3);
-    study.reference_spp = std::max(64, int(std::min(affordable, 1e6)) / 16 * 16);
+    seconds_a_sample = std::max(probe.seconds, 1e-3) / kProbeSpp;
+    const double affordable = kReferenceShare * budget / seconds_a_sample;
+    study.reference_spp = std::max(kLeastReferenceSpp, int(std::min(affordable, 1e6)) / 16 * 16);
     const RenderResult first = render_at(scene, study.reference_spp / 2, kReferenceSeed, options);
     const RenderResult second = render_at(scene, study.reference_spp / 2, kReferenceSeed + 1, options);
     reference = reference_of(beauty_of(first), beauty_of(second));
     study.reference_seconds = first.report.seconds + second.report.seconds;
     study.threads = first.report.threads;
   }
+  const PartPair reference_parts =
+      render_parts(description, kReferencePartSpp, kReferenceSeed + 2, options.threads, progress);
   study.reference = reference.mean;
+  study.exposure = reference.exposure;
   study.epsilon = reference.metrics.epsilon;
   study.width = study.reference.width;
   study.height = study.reference.height;
   study.reference_rel_mse = noise_rel_mse(reference.pair(), study.epsilon).value;
   const double each = (1 - kReferenceShare) * budget / double(settings.size());
+  const auto needed = [&](int points) {
+    return seconds_a_sample * (kFirstSpp * ((1 << points) - 1) + 2 * kPartSpp);
+  };
+  const int fewest_points = needed(kFewestPoints) <= each ? kFewestPoints : kFewestPointsInHaste;
+  if (needed(fewest_points) > each) {
+    progress.note(fmt::format("{:.0f} s are too few for {} settings of this scene: it will be about {:.0f} s",
+                              options.budget_seconds, settings.size(),
+                              study.reference_seconds + needed(fewest_points) * double(settings.size())));
+  }
   for (const Setting& setting : settings) {
     progress.update("cost", double(&setting - settings.data()) + 1, total);
     SceneDesc changed = description;
     try {
       setting.apply(changed, progress);
-      const Scene scene = build_scene(changed, progress);
-      study.records.push_back(measure(setting, scene, reference, each, options));
+      reset_peak_memory();
+      const double for_ladder = each - 2 * kPartSpp * seconds_a_sample;
+      CostRecord record =
+          measure(setting, build_scene(changed, progress), reference, for_ladder, fewest_points, options);
+      record.peak_memory_bytes = peak_memory_bytes();
+      record.parts = bias_by_part(
+          render_parts(changed, kPartSpp, changed.seed + kMostPoints + 1, options.threads, progress),
+          reference_parts);
+      study.records.push_back(std::move(record));
     } catch (const InputError& e) {
       study.left_out.push_back(fmt::format("{}: {}", setting.title(), e.diagnostics().front().text()));
     }

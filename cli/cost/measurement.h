@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/cost/parts.h"
 #include "cli/cost/settings.h"
 #include "core/image/error_model.h"
 #include "core/image/metrics.h"
@@ -15,7 +16,8 @@ namespace spectrace::cli {
 struct CostPoint {
   int spp = 0;
   double seconds = 0;
-  Metrics metrics;  ///< of the beauty
+  Metrics metrics;       ///< of the beauty
+  double ciede2000 = 0;  ///< mean over the picture, as exposed on the page
 };
 
 struct CostRecord {
@@ -23,7 +25,9 @@ struct CostRecord {
   std::vector<CostPoint> points;  ///< by samples, at least two
   Estimate bias;                  ///< of relMSE; may be below 0
   ErrorModel model;
-  Image picture;  ///< of the last point: R, G, B
+  std::size_t peak_memory_bytes = 0;  ///< of the process: this scene's, and the reference's images
+  std::vector<PartBias> parts;        ///< by lobe and band
+  Image picture;                      ///< of the last point: R, G, B
 };
 
 struct CostStudy {
@@ -34,6 +38,7 @@ struct CostStudy {
   double reference_rel_mse = 0;  ///< its own noise
   double epsilon = 0;            ///< of relMSE: kRelativeEpsilon of the reference
   Image reference;               ///< R, G, B
+  double exposure = 1;           ///< of the pictures
   std::vector<CostRecord> records;
   std::vector<std::string> left_out;  ///< settings that cannot be rendered, and why
 };

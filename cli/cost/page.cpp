@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "cli/cost/answers.h"
-#include "cli/report/exposure.h"
 #include "core/base/version.h"
 #include "core/image/error_map.h"
 
@@ -35,9 +34,10 @@ constexpr const char* kScript =
 constexpr int kLinePoints = 40;
 
 std::string point_label(const CostRecord& record, const CostPoint& point) {
-  return fmt::format("{}, {} samples: {:.3g} s, relMSE {:.3g}, MAPE {:.3g} %, PSNR {:.2f} dB", record.title,
-                     point.spp, point.seconds, point.metrics.rel_mse, 100 * point.metrics.mape,
-                     point.metrics.psnr_db);
+  return fmt::format(
+      "{}, {} samples: {:.3g} s, relMSE {:.3g}, MAPE {:.3g} %, PSNR {:.2f} dB, CIEDE2000 {:.3g}",
+      record.title, point.spp, point.seconds, point.metrics.rel_mse, 100 * point.metrics.mape,
+      point.metrics.psnr_db, point.ciede2000);
 }
 
 std::string percent(double share) { return fmt::format("{:.3g}", 100 * share); }
@@ -53,16 +53,35 @@ std::string settings_table(const CostStudy& study) {
       "<table><tr><th>setting</th><th>kernel</th><th>time a sample over exact</th><th>noise over "
       "exact</th><th>noise falls with exponent</th>"
       "<th>bias: root of relMSE [%]</th><th>most samples</th><th>s</th><th>relMSE</th><th>MAPE [%]</th>"
-      "<th>PSNR [dB]</th></tr>\n";
+      "<th>PSNR [dB]</th><th>CIEDE2000</th><th>memory [MB]</th></tr>\n";
   for (const CostRecord& record : study.records) {
     const CostPoint& last = record.points.back();
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</"
         "td><td>{:.2f}</td>"
-        "<td>{:.3g}</td><td>{}</td><td>{:.2f}</td></tr>\n",
+        "<td>{:.3g}</td><td>{}</td><td>{:.2f}</td><td>{:.3g}</td><td>{:.0f}</td></tr>\n",
         escaped(record.title), escaped(record.kernel), record.model.per_sample / exact.model.per_sample,
         noise_of(record) / noise_of(exact), record.model.exponent, bias_text(record.bias), last.spp,
-        last.seconds, last.metrics.rel_mse, percent(last.metrics.mape), last.metrics.psnr_db);
+        last.seconds, last.metrics.rel_mse, percent(last.metrics.mape), last.metrics.psnr_db, last.ciede2000,
+        double(record.peak_memory_bytes) * 1e-6);
+  }
+  return html + "</table>\n";
+}
+
+/// A column a lobe and band of the exact setting.
+std::string parts_table(const CostStudy& study) {
+  const std::vector<PartBias>& columns = study.records.front().parts;
+  std::string html = "<table><tr><th>setting</th>";
+  for (const PartBias& column : columns) html += fmt::format("<th>{}</th>", escaped(column.name));
+  html += "</tr>\n";
+  for (const CostRecord& record : study.records) {
+    html += fmt::format("<tr><td>{}</td>", escaped(record.title));
+    for (const PartBias& column : columns) {
+      const auto part = std::find_if(record.parts.begin(), record.parts.end(),
+                                     [&](const PartBias& p) { return p.name == column.name; });
+      html += fmt::format("<td>{}</td>", part == record.parts.end() ? "" : bias_text(part->bias));
+    }
+    html += "</tr>\n";
   }
   return html + "</table>\n";
 }
@@ -84,10 +103,10 @@ std::string answers_table(const CostStudy& study) {
 }
 
 std::string pictures(const CostStudy& study) {
-  const double exposure = exposure_of(study.reference);
+  const double exposure = study.exposure;
   const auto figure = [](const Image& picture, const std::string& caption) {
     return fmt::format(
-        "<figure><img loading=\"lazy\" alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
+        "<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
         escaped(caption), png_data_uri(picture));
   };
   const auto exposed = [&](Image picture) {
@@ -113,7 +132,7 @@ LineChart error_chart(const CostStudy& study, const CostMetric& metric) {
   for (const CostRecord& record : study.records) {
     Curve curve{.name = record.title, .points = {}, .line = {}};
     for (const CostPoint& point : record.points) {
-      curve.points.push_back({point.seconds, point.metrics.*metric.field, point_label(record, point)});
+      curve.points.push_back({point.seconds, metric.of(point), point_label(record, point)});
     }
     if (metric.is_fitted) {
       const double first = record.points.front().spp, ratio = record.points.back().spp / first;
@@ -173,6 +192,7 @@ std::string cost_page(const CostStudy& study) {
     separator = ", ";
   }
   html += ".</p>\n<h2>All settings</h2>\n" + settings_table(study);
+  html += "<h2>Bias by lobe and wavelength</h2>\n<p>Roots of relMSE [%].</p>\n" + parts_table(study);
   html += "<h2>Seconds per effect</h2>\n" + svg(effects_chart(study));
   for (const std::string& reason : study.left_out) {
     html += fmt::format("<p>Left out: {}</p>\n", escaped(reason));

@@ -14,12 +14,14 @@ namespace spectrace::cli {
 struct CostMetric {
   const char* id;
   const char* title;
-  double Metrics::*field;
+  double (*of)(const CostPoint&);
   bool is_fitted;  ///< the error model tells it
 };
-inline constexpr std::array<CostMetric, 3> kCostMetrics{{{"rel_mse", "relMSE", &Metrics::rel_mse, true},
-                                                         {"mape", "MAPE", &Metrics::mape, false},
-                                                         {"psnr_db", "PSNR [dB]", &Metrics::psnr_db, false}}};
+inline constexpr std::array<CostMetric, 4> kCostMetrics{
+    {{"rel_mse", "relMSE", [](const CostPoint& p) { return p.metrics.rel_mse; }, true},
+     {"mape", "MAPE", [](const CostPoint& p) { return p.metrics.mape; }, false},
+     {"psnr_db", "PSNR [dB]", [](const CostPoint& p) { return p.metrics.psnr_db; }, false},
+     {"ciede2000", "CIEDE2000", [](const CostPoint& p) { return p.ciede2000; }, false}}};
 
 /// Error against seconds of rendering, a curve a setting.
 [[nodiscard]] LineChart error_chart(const CostStudy& study, const CostMetric& metric);

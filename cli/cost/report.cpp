@@ -14,13 +14,14 @@ namespace spectrace::cli {
 namespace {
 
 std::string csv_of(const CostStudy& study) {
-  std::string csv = "knob,name,spp,seconds,rel_mse,mape,psnr_db,ssim,fitted_rel_mse,fitted_seconds\n";
+  std::string csv =
+      "knob,name,spp,seconds,rel_mse,mape,psnr_db,ssim,ciede2000,fitted_rel_mse,fitted_seconds\n";
   for (const CostRecord& record : study.records) {
     for (const CostPoint& point : record.points) {
-      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", record.knob,
+      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", record.knob,
                          record.name, point.spp, point.seconds, point.metrics.rel_mse, point.metrics.mape,
-                         point.metrics.psnr_db, point.metrics.ssim, record.model.rel_mse(point.spp),
-                         record.model.seconds(point.spp));
+                         point.metrics.psnr_db, point.metrics.ssim, point.ciede2000,
+                         record.model.rel_mse(point.spp), record.model.seconds(point.spp));
     }
   }
   return csv;

@@ -58,6 +58,17 @@ std::string json_of(const CostStudy& study) {
     json.member("bias_rel_mse_standard_error", record.bias.standard_error);
     json.member("seconds_start", record.model.start);
     json.member("seconds_a_sample", record.model.per_sample);
+    json.member("peak_memory_bytes", double(record.peak_memory_bytes));
+    json.key("parts");
+    json.begin_array();
+    for (const PartBias& part : record.parts) {
+      json.begin_object();
+      json.member("name", part.name);
+      json.member("bias_rel_mse", part.bias.value);
+      json.member("bias_rel_mse_standard_error", part.bias.standard_error);
+      json.end_object();
+    }
+    json.end_array();
     json.key("points");
     json.begin_array();
     for (const CostPoint& point : record.points) {
@@ -68,6 +79,7 @@ std::string json_of(const CostStudy& study) {
       json.member("mape", point.metrics.mape);
       json.member("psnr_db", point.metrics.psnr_db);
       json.member("ssim", point.metrics.ssim);
+      json.member("ciede2000", point.ciede2000);
       json.end_object();
     }
     json.end_array();

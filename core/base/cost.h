@@ -15,7 +15,10 @@ double seconds_of(const F& step) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The most memory this process has held at once so far; 0 where the system does not tell.
+/// The most memory this process has held at once, so far or since reset_peak_memory(); 0 where the system
+/// does not tell.
 std::size_t peak_memory_bytes();
+/// The most from now on, where the system can start again (Linux); else as before.
+void reset_peak_memory();
 
 }  // namespace spectrace

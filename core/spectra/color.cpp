@@ -10,6 +10,8 @@
 namespace spectrace {
 namespace {
 
+constexpr double kLabToe = 216.0 / 24389.0, kLabToeSlope = 841.0 / 108.0;  // CIE 15: (6/29)³, (29/6)² / 3
+
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 std::array<double, 3> multiply(const Matrix3& m, const std::array<double, 3>& v) {
@@ -134,6 +136,15 @@ Xyz reflectance_to_xyz(const Spectrum& reflectance, double (*illuminant)(double)
 
 Rgb xyz_to_rgb(const Xyz& xyz) { return multiply(srgb().from_xyz, xyz); }
 Xyz rgb_to_xyz(const Rgb& rgb) { return multiply(srgb().to_xyz, rgb); }
+
+double lab_curve(double t) { return t > kLabToe ? std::cbrt(t) : kLabToeSlope * t + 4.0 / 29.0; }
+double lab_slope(double t) { return t > kLabToe ? 1 / (3 * std::cbrt(t) * std::cbrt(t)) : kLabToeSlope; }
+
+Xyz xyz_to_lab(const Xyz& xyz, const Xyz& white) {
+  const double x = lab_curve(xyz[0] / white[0]), y = lab_curve(xyz[1] / white[1]),
+               z = lab_curve(xyz[2] / white[2]);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
 
 double srgb_encode(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);

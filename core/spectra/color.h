@@ -30,6 +30,11 @@ Xyz reflectance_to_xyz(const Spectrum& reflectance, double (*illuminant)(double)
 /// matrix. Inverses of each other to rounding.
 Rgb xyz_to_rgb(const Xyz& xyz);
 Xyz rgb_to_xyz(const Rgb& rgb);
+/// CIELAB (CIE 15): L* of `white` is 100; any scale, the same for both.
+Xyz xyz_to_lab(const Xyz& xyz, const Xyz& white);
+/// The function of CIELAB, and its slope: a cube root above its toe, a line below.
+double lab_curve(double t);
+double lab_slope(double t);
 /// The sRGB transfer curve for display, [0, 1] to [0, 1].
 double srgb_encode(double linear);
 double srgb_decode(double encoded);

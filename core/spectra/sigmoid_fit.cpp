@@ -40,9 +40,6 @@ std::optional<std::array<double, 3>> solve(const Matrix3& a, const std::array<do
 }
 
 // The CIELAB curve with its linear toe: CIE 15:2004, sec. 8.2.1.
-constexpr double kToe = 216.0 / 24389.0, kToeSlope = 841.0 / 108.0;
-double lab_curve(double t) { return t > kToe ? std::cbrt(t) : kToeSlope * t + 4.0 / 29.0; }
-double lab_slope(double t) { return t > kToe ? 1 / (3 * std::cbrt(t) * std::cbrt(t)) : kToeSlope; }
 
 }  // namespace
 
@@ -77,12 +74,6 @@ SigmoidFitter::SigmoidFitter(int step_nm) {
   }
 }
 
-Xyz SigmoidFitter::lab(const Xyz& xyz) const {
-  const double x = lab_curve(xyz[0] / white_[0]), y = lab_curve(xyz[1] / white_[1]),
-               z = lab_curve(xyz[2] / white_[2]);
-  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
-}
-
 SigmoidFitter::Residual SigmoidFitter::residual(const SigmoidCoefficients& c, const Xyz& target_lab) const {
   Xyz xyz{};
   Matrix3 slope{};  // d xyz / d c
@@ -99,7 +90,7 @@ SigmoidFitter::Residual SigmoidFitter::residual(const SigmoidCoefficients& c, co
     }
   }
   Residual out;
-  const Xyz here = lab(xyz);
+  const Xyz here = xyz_to_lab(xyz, white_);
   for (std::size_t k = 0; k < 3; ++k) out.r[k] = here[k] - target_lab[k];
   std::array<double, 3> f{};
   for (std::size_t k = 0; k < 3; ++k) f[k] = lab_slope(xyz[k] / white_[k]) / white_[k];
@@ -112,7 +103,7 @@ SigmoidFitter::Residual SigmoidFitter::residual(const SigmoidCoefficients& c, co
 }
 
 SigmoidFitter::Fit SigmoidFitter::fit(const Rgb& rgb, const SigmoidCoefficients& start) const {
-  const Xyz target = lab(rgb_to_xyz(rgb));
+  const Xyz target = xyz_to_lab(rgb_to_xyz(rgb), white_);
   SigmoidCoefficients c = start;
   Residual now = residual(c, target);
   double damping = kFirstDamping;

@@ -51,7 +51,6 @@ class SigmoidFitter {
   };
   struct Residual;
   [[nodiscard]] Residual residual(const SigmoidCoefficients& c, const Xyz& target_lab) const;
-  [[nodiscard]] Xyz lab(const Xyz& xyz) const;
 
   std::vector<Node> nodes_;
   Xyz white_{};

@@ -52,7 +52,7 @@ TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
   write_lambert_scene("ball.json");
   ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "1"}).exit_code, 0);
   for (const char* file :
-       {"cost.csv", "cost.json", "effects.svg", "mape.svg", "psnr_db.svg", "rel_mse.svg"}) {
+       {"cost.csv", "cost.json", "effects.svg", "ciede2000.svg", "mape.svg", "psnr_db.svg", "rel_mse.svg"}) {
     EXPECT_FALSE(read_text(folder_ / "report" / file).empty()) << file;
   }
   const std::string page = read_text(folder_ / "report" / "index.html");

@@ -192,7 +192,7 @@ TEST(Film, TellsMeansHalvesAndVariances) {
   EXPECT_NEAR(value("beauty_a.G"), 9, 1e-4);                          // samples 0 to 3
   EXPECT_NEAR(value("beauty_b.B"), 187, 1e-4);                        // samples 4 to 7
   EXPECT_NEAR(value("beauty_variance.R"), 107988.0 / (8 * 7), 1e-2);  // Σ(x - 98)² = 107988
-  // (187 - 9) / 2 over the pixel, floor of a hundredth of the same
+  // (187 - 9) / 2 over the pixel, floor of a tenth of the same
   EXPECT_NEAR(film.relative_error(), 89 / (98 * std::sqrt(1 + 1e-2)), 1e-6);
 }
 
