@@ -21,6 +21,9 @@ namespace {
 /// does not tell half vectors of θm < 6e-8 (u < 2e-4) from the normal.
 constexpr Float kLeastPole = Float(1e-11);
 
+/// |wo + wi| below which the sum is the rounding of two unit vectors: wi = -wo (hard case H4).
+constexpr Float kLeastSum = Float(0x1p-22);
+
 /// Least density of sampling a cell, relative to its mean over the spectral axis. The stored luminance is
 /// that of the eye, 0 for what reflects only in the infrared; the mean bounds the weights there too.
 constexpr float kSamplingFloor = 0.125f;
@@ -119,7 +122,8 @@ struct MeasuredBrdf::Data {
 
   explicit Data(const MeasuredTables& t);
   [[nodiscard]] Incident incident(Vec3 wo) const;
-  [[nodiscard]] Half half(const Incident& in, Vec3 wi_unflipped) const;
+  /// nullopt for wi = -wo.
+  [[nodiscard]] std::optional<Half> half(const Incident& in, Vec3 wi_unflipped) const;
   [[nodiscard]] Vec3 half_vector(const Incident& in, UnitPoint u) const;
   [[nodiscard]] Footprint footprint(const Incident& in, UnitPoint u, UnitPoint s) const;
   [[nodiscard]] SampledSpectrum apply(const Footprint& at, const SampledWavelengths& lambda) const;
@@ -152,9 +156,10 @@ Incident MeasuredBrdf::Data::incident(Vec3 wo) const {
   return in;
 }
 
-Half MeasuredBrdf::Data::half(const Incident& in, Vec3 wi_unflipped) const {
+std::optional<Half> MeasuredBrdf::Data::half(const Incident& in, Vec3 wi_unflipped) const {
   const Vec3 h = in.wo + in.flip(wi_unflipped);
   const Float along = std::sqrt(sqr(h.x) + sqr(h.y)), norm = length(h);
+  if (!(norm >= kLeastSum)) return std::nullopt;
   Half out;
   out.u = {polar_coordinate(std::atan2(along, h.z)), Float(0.5)};  // at the pole: a fixed azimuth
   if (along > 0) {
@@ -220,10 +225,11 @@ BsdfValue MeasuredBrdf::evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const
   if (!(wo.z > 0 && wi.z > 0)) return {};
   const Data& d = *data_;
   const Incident in = d.incident(wo);
-  const Half half = d.half(in, wi);
-  const Warp2D::Sample s = d.vndf.invert(half.u, in.slices);
-  return {.value_cos = d.apply(d.footprint(in, half.u, s.position), at.lambda),
-          .pdf = d.sampling.eval(s.position, in.slices) * s.pdf * half.density};
+  const std::optional<Half> half = d.half(in, wi);
+  if (!half) return {};
+  const Warp2D::Sample s = d.vndf.invert(half->u, in.slices);
+  return {.value_cos = d.apply(d.footprint(in, half->u, s.position), at.lambda),
+          .pdf = d.sampling.eval(s.position, in.slices) * s.pdf * half->density};
 }
 
 LobeValues MeasuredBrdf::evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const {
@@ -238,21 +244,22 @@ std::optional<BsdfSample> MeasuredBrdf::sample(Vec3 wo, const BsdfRandom& u, con
   const Warp2D::Sample m = d.vndf.sample(s.position, in.slices);
   const Vec3 wm = d.half_vector(in, m.position);
   const Float wo_dot_wm = dot(in.wo, wm);
+  if (!(2 * wo_dot_wm >= kLeastSum)) return std::nullopt;  // or the half vector faces away
   const Vec3 wi = in.flip(wm * (2 * wo_dot_wm) - in.wo);
   const Float sin_theta_m = std::sqrt(sqr(wm.x) + sqr(wm.y));
   const Float pdf = s.pdf * m.pdf * unit_area_per_solid_angle(Float(m.position.x), sin_theta_m, wo_dot_wm);
-  // A half vector that faces away from wo has a negative density.
   if (!(wi.z > 0 && pdf > 0)) return std::nullopt;
   const SampledSpectrum value_cos = d.apply(d.footprint(in, m.position, s.position), at.lambda);
   return BsdfSample{.wi = wi, .weight = value_cos / pdf, .pdf = pdf, .lobe = Lobe::kSpecular};
 }
 
 std::optional<MeasuredBrdf::Footprint> MeasuredBrdf::footprint(Vec3 wo, Vec3 wi) const {
-  if (!(wo.z > 0 && wi.z > 0)) return std::nullopt;  // wi = -wo is among them
+  if (!(wo.z > 0 && wi.z > 0)) return std::nullopt;
   const Data& d = *data_;
   const Incident in = d.incident(wo);
-  const Half half = d.half(in, wi);
-  Footprint out = d.footprint(in, half.u, d.vndf.invert(half.u, in.slices).position);
+  const std::optional<Half> half = d.half(in, wi);
+  if (!half) return std::nullopt;
+  Footprint out = d.footprint(in, half->u, d.vndf.invert(half->u, in.slices).position);
   float all = 0, measured = 0;
   for (int i = 0; i < out.count; ++i) {
     all += out.weight[i];

@@ -17,9 +17,11 @@ namespace spectrace {
 struct CellCounts {
   std::size_t cells = 0;
   std::size_t below_horizon = 0;
-  std::size_t measured = 0;      ///< enter the fits
-  std::size_t extrapolated = 0;  ///< above the horizon, but beyond the last measured elevation in both orders
-  std::size_t invalid = 0;       ///< above the horizon, not beyond it, but marked invalid in the file
+  std::size_t measured = 0;  ///< enter the fits
+  /// Above the horizon, but beyond the last measured elevation in both orders; or in one, where the other
+  /// lies too near the horizon to tell f.
+  std::size_t extrapolated = 0;
+  std::size_t invalid = 0;  ///< the same of what the file marks invalid
 };
 
 /// Cells that were measured ("fitted" cells), grouped by (theta_h, theta_d), with what the fits need of each.

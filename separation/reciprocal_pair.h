@@ -14,8 +14,8 @@ namespace spectrace {
 struct ReciprocalPair {
   std::array<MeasuredBrdf::Footprint, 2> footprint;
   std::array<double, 2> scale{};  ///< of each footprint's weights
-  bool measured = false;          ///< in at least one order
-  bool extrapolated = false;      ///< beyond the last measured elevation in every order there is
+  bool measured = false;          ///< in both orders, or in one from which f̂ can be told
+  bool extrapolated = false;      ///< beyond the last measured elevation in every order that was not measured
   bool any = false;               ///< at least one order holds a value
   bool both = false;              ///< both orders do, and q is the sum of both
 

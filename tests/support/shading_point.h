@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
+#include "core/math/math.h"
 #include "materials/bsdf.h"
 
 namespace spectrace::test {
@@ -16,5 +18,18 @@ inline const SampledWavelengths kLambda = [] {
   return SampledWavelengths(nm, pdf);
 }();
 inline const ShadingPoint kAt{.lambda = kLambda};
+
+inline Vec3 direction_deg(double theta_deg, double phi_deg) {
+  const double theta = theta_deg * kPi64 / 180, phi = phi_deg * kPi64 / 180;
+  return {Float(std::sin(theta) * std::cos(phi)), Float(std::sin(theta) * std::sin(phi)),
+          Float(std::cos(theta))};
+}
+
+/// What a value or a weight may be.
+inline bool is_valid(const SampledSpectrum& s) { return s.is_finite() && s.min() >= 0; }
+inline bool is_valid(const BsdfValue& v) {
+  return is_valid(v.value_cos) && std::isfinite(v.pdf) && v.pdf >= 0;
+}
+inline bool is_nothing(const BsdfValue& v) { return v.value_cos.is_zero() && v.pdf == 0; }
 
 }  // namespace spectrace::test

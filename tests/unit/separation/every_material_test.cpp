@@ -11,7 +11,7 @@
 
 #include "separation/separate.h"
 #include "tests/support/test_data.h"
-#include "tests/unit/separation/acquired.h"
+#include "tests/support/acquired.h"
 
 namespace spectrace::test {
 namespace {

@@ -16,7 +16,7 @@
 #include "separation/fill_grid.h"
 #include "separation/separate.h"
 #include "separation/tabulate.h"
-#include "tests/unit/separation/acquired.h"
+#include "tests/support/acquired.h"
 
 namespace spectrace {
 namespace {

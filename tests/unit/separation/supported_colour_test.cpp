@@ -10,7 +10,7 @@
 #include "separation/separate.h"
 #include "separation/spectral_fit.h"
 #include "separation/split.h"
-#include "tests/unit/separation/acquired.h"
+#include "tests/support/acquired.h"
 
 namespace spectrace::test {
 namespace {

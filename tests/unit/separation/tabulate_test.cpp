@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "materials/plain_table_brdf.h"
-#include "tests/unit/separation/acquired.h"
+#include "tests/support/acquired.h"
 
 namespace spectrace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measurements of the project's own materials, small enough for unit tests.
+// Measurements of the project's own materials, small enough for tests to loop over.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,20 @@
 
 namespace spectrace::test {
 
+inline const std::vector<float> kAcquiredWavelengthsNm{400, 450, 500, 550, 600, 650, 700};
+
 /// scenes/materials/NAME.json as the virtual goniophotometer sees it.
-inline MeasuredBrdf acquired(const std::string& name,
-                             std::vector<float> lambda_nm = {400, 450, 500, 550, 600, 650, 700}) {
+inline MeasuredTables acquired_tables(const std::string& name,
+                                      std::vector<float> lambda_nm = kAcquiredWavelengthsNm) {
   const Material material = build_material(
       load_material(std::filesystem::path(SPECTRACE_SOURCE_DIR) / "scenes/materials" / (name + ".json")));
   AcquisitionOptions options;
   options.lambda_nm = std::move(lambda_nm);
   SilentProgress progress;
-  return MeasuredBrdf(acquire(material, options, progress));
+  return acquire(material, options, progress);
+}
+inline MeasuredBrdf acquired(const std::string& name, std::vector<float> lambda_nm = kAcquiredWavelengthsNm) {
+  return MeasuredBrdf(acquired_tables(name, std::move(lambda_nm)));
 }
 
 /// "glossy", up to 0.3 brighter the farther into the measurement's elevations light is reflected to.
