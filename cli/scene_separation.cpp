@@ -50,7 +50,8 @@ bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Pro
   for (MaterialDesc* const each : materials) {
     MaterialDesc& material = *each;
     if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
-      const CachedSeparation separated = cached_separation(measured->file, cache, options, progress);
+      const CachedSeparation separated =
+          cached_separation(measured->file, cache, options, separation.quality, progress);
       if (!separated.report.usable) {
         progress.note(fmt::format("{}: {}", measured->file.string(), separated.report.verdict));
         return false;

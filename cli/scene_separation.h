@@ -8,6 +8,7 @@
 #include "materials/half_difference_grid.h"
 #include "renderer/scene_desc.h"
 #include "separation/choose_model.h"
+#include "separation/compact.h"
 
 namespace spectrace::cli {
 
@@ -15,6 +16,7 @@ struct SceneSeparation {
   std::string model;  ///< a model's name, "auto", or empty: none
   double tolerance = kDefaultTolerance;
   HalfDifferenceGrid grid;
+  int quality = kDefaultQuality;  ///< of the compact tables
   bool paired = false;
   std::string cache;  ///< folder; empty: the user's
   int threads = 0;

@@ -23,12 +23,12 @@ constexpr int kMethodVersion = 8;
 constexpr std::size_t kHashDigits = 16;  // 64 bits: no two materials of one folder meet
 
 /// Everything but the thread count, which changes no bit of the result.
-std::string key_of(const std::string& file_sha256, const SeparationOptions& o) {
+std::string key_of(const std::string& file_sha256, const SeparationOptions& o, int quality) {
   const std::string text = fmt::format(
-      "{} v{} grid {} {} {} {} weight {} eps {} starts {} prior {} {} {} {} terms {} {}", file_sha256,
-      kMethodVersion, o.grid.n_theta_h, o.grid.n_theta_d, o.grid.n_phi_d, o.grid.quadratic_theta_h,
-      static_cast<int>(o.weight), o.epsilon, o.starts, o.diffraction_prior, name_of(o.diffuse),
-      name_of(o.residual), name_of(o.colour), o.residual_rank, o.reciprocal);
+      "{} v{} grid {} {} {} {} weight {} eps {} starts {} prior {} {} {} {} terms {} {} quality {}",
+      file_sha256, kMethodVersion, o.grid.n_theta_h, o.grid.n_theta_d, o.grid.n_phi_d,
+      o.grid.quadratic_theta_h, static_cast<int>(o.weight), o.epsilon, o.starts, o.diffraction_prior,
+      name_of(o.diffuse), name_of(o.residual), name_of(o.colour), o.residual_rank, o.reciprocal, quality);
   return sha256_hex(std::as_bytes(std::span(text))).substr(0, kHashDigits);
 }
 
@@ -73,11 +73,11 @@ SeparationResult separate_file(const std::filesystem::path& bsdf, const Separati
 }
 
 CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std::filesystem::path& folder,
-                                   const SeparationOptions& options, Progress& progress) {
+                                   const SeparationOptions& options, int quality, Progress& progress) {
   const std::vector<std::byte> bytes = read_file(bsdf);
   const std::string sha256 = sha256_hex(bytes);
   CachedSeparation cached;
-  cached.file = folder / fmt::format("{}-{}.sep", bsdf.stem().string(), key_of(sha256, options));
+  cached.file = folder / fmt::format("{}-{}.sep", bsdf.stem().string(), key_of(sha256, options, quality));
   cached.was_cached = is_readable(cached.file);
   if (cached.was_cached) return cached;
 
@@ -89,7 +89,7 @@ CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std:
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(folder.string(), {}, "cannot make this folder: " + failed.message());
-  compact_to_tensors(compact(result.tables, kDefaultQuality).tables).write(cached.file);
+  compact_to_tensors(compact(result.tables, quality).tables).write(cached.file);
   cached.report = std::move(result.report);
   return cached;
 }

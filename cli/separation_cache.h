@@ -16,11 +16,11 @@ struct CachedSeparation {
 };
 
 /// The compact `.sep` of a measured file in `folder` (made where absent), separating only where it is not
-/// there yet. Its name holds the file's stem and a hash of its bytes, the options and the method's version,
+/// there yet. Its name holds the file's stem and a hash of its bytes, options, quality and method's version,
 /// so that neither a changed measurement nor a changed method meets an old result. Throws InputError where
 /// the file cannot be read or its fit is unusable.
 CachedSeparation cached_separation(const std::filesystem::path& bsdf, const std::filesystem::path& folder,
-                                   const SeparationOptions& options, Progress& progress);
+                                   const SeparationOptions& options, int quality, Progress& progress);
 
 /// Reads, separates and returns the result with its provenance filled in: file name and SHA-256.
 SeparationResult separate_file(const std::filesystem::path& bsdf, const SeparationOptions& options,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <utility>
 
 #include "cli/report/exposure.h"
@@ -20,8 +21,8 @@ namespace {
 /// Of the budget: the reference's share. The error of a setting with as much noise as the exact one is then
 /// told from its own at a few times the samples.
 constexpr double kReferenceShare = 0.4;
-/// What loading, metrics and pictures take beside rendering.
-constexpr double kRenderShare = 0.85;
+/// What is left to write the report in.
+constexpr double kMeasuringShare = 0.95;
 constexpr int kFewestPoints = 3, kMostPoints = 10;
 /// Where the budget has no time for three: a line goes through two.
 constexpr int kFewestPointsInHaste = 2;
@@ -103,9 +104,13 @@ CostRecord measure(const Setting& setting, const Scene& scene, const Reference& 
 
 CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>& settings,
                        const CostOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   CostStudy study;
   study.scene = description.file_name;
-  const double budget = options.budget_seconds * kRenderShare;
+  const double budget = options.budget_seconds * kMeasuringShare;
   const auto total = double(settings.size() + 1);
   progress.update("cost", 0, total);
   Reference reference;
@@ -130,18 +135,19 @@ CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>&
   study.width = study.reference.width;
   study.height = study.reference.height;
   study.reference_rel_mse = noise_rel_mse(reference.pair(), study.epsilon).value;
-  const double each = (1 - kReferenceShare) * budget / double(settings.size());
   const auto needed = [&](int points) {
     return seconds_a_sample * (kFirstSpp * ((1 << points) - 1) + 2 * kPartSpp);
   };
-  const int fewest_points = needed(kFewestPoints) <= each ? kFewestPoints : kFewestPointsInHaste;
-  if (needed(fewest_points) > each) {
+  if (const double least = elapsed() + needed(kFewestPointsInHaste) * double(settings.size());
+      least > budget) {
     progress.note(fmt::format("{:.0f} s are too few for {} settings of this scene: it will be about {:.0f} s",
-                              options.budget_seconds, settings.size(),
-                              study.reference_seconds + needed(fewest_points) * double(settings.size())));
+                              options.budget_seconds, settings.size(), least));
   }
   for (const Setting& setting : settings) {
     progress.update("cost", double(&setting - settings.data()) + 1, total);
+    const double settings_left = total - 1 - double(&setting - settings.data());
+    const double each = (budget - elapsed()) / settings_left;
+    const int fewest_points = needed(kFewestPoints) <= each ? kFewestPoints : kFewestPointsInHaste;
     SceneDesc changed = description;
     try {
       setting.apply(changed, progress);

@@ -105,9 +105,8 @@ std::string answers_table(const CostStudy& study) {
 std::string pictures(const CostStudy& study) {
   const double exposure = study.exposure;
   const auto figure = [](const Image& picture, const std::string& caption) {
-    return fmt::format(
-        "<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
-        escaped(caption), png_data_uri(picture));
+    return fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
+                       escaped(caption), png_data_uri(picture));
   };
   const auto exposed = [&](Image picture) {
     for (float& value : picture.data) value *= static_cast<float>(exposure);

@@ -31,6 +31,15 @@ Setting with_model(const std::string& model, SceneSeparation separation) {
           }};
 }
 
+/// Of the richest model that is not a correction; its default is among the models.
+Setting with_sep_quality(int quality, SceneSeparation separation) {
+  separation.quality = quality;
+  Setting setting = with_model("diffraction", std::move(separation));
+  setting.knob = ".sep quality";
+  setting.name = std::to_string(quality);
+  return setting;
+}
+
 Setting with_depth(int depth) {
   return {"path depth", std::to_string(depth),
           [depth](SceneDesc& scene, Progress&) { scene.integrator.max_depth = depth; }};
@@ -56,6 +65,7 @@ std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& 
     for (const char* model : {"residual", "diffraction", "fresnel", "sun"}) {
       settings.push_back(with_model(model, separation));
     }
+    for (const int quality : {1, 3, 11}) settings.push_back(with_sep_quality(quality, separation));
   }
   for (const int depth : {1, 2, 4, 8}) {
     if (depth < scene.integrator.max_depth) settings.push_back(with_depth(depth));
