@@ -27,15 +27,11 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/image/exr_header.h"
 
 namespace spectrace {
 
 namespace {
-
-// A pixel of the most compressible image (constant, ZIP) takes 4 / 1030 bytes a channel; a header that asks
-// for more than twice that is damaged or hostile.
-constexpr std::uint64_t kMaxExpansion = 2060;
-constexpr std::uint64_t kFreeBytes = std::uint64_t(1) << 20;  // tiny files may be all header
 
 class MemoryOut final : public Imf::OStream {
  public:
@@ -73,37 +69,6 @@ class MemoryIn final : public Imf::IStream {
   std::uint64_t position_ = 0;
 };
 
-/// Attributes announce their size, and the library allocates it before it reads: refuse what the file cannot
-/// hold. Layout: "OpenEXR File Layout", openexr.com, sections "Header" and "Attribute Layout".
-/// `bytes` may be the beginning of a file of `file_size`.
-void check_attribute_sizes(std::span<const std::byte> bytes, std::uint64_t file_size,
-                           const std::string& file) {
-  constexpr std::size_t kMagicAndVersion = 8;
-  std::size_t at = kMagicAndVersion;
-  const auto text_end = [&](std::size_t from) {
-    const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), std::byte{0});
-    return static_cast<std::size_t>(end - bytes.begin());
-  };
-  const auto truncated = [&] {
-    return InputError(file, fmt::format("byte {}", at), "EXR header ends too early");
-  };
-  while (at < bytes.size() && bytes[at] != std::byte{0}) {
-    const std::size_t name_end = text_end(at);
-    const std::size_t type_end = name_end < bytes.size() ? text_end(name_end + 1) : bytes.size();
-    if (type_end + 1 + sizeof(std::uint32_t) > bytes.size()) throw truncated();
-    std::uint32_t size = 0;
-    std::memcpy(&size, bytes.data() + type_end + 1, sizeof size);
-    const std::size_t value = type_end + 1 + sizeof size;
-    if (size > file_size - value) {
-      throw InputError(
-          file, fmt::format("byte {}", type_end + 1),
-          fmt::format("EXR attribute announces {} bytes, the file has {} left", size, file_size - value));
-    }
-    at = value + size;
-  }
-  if (at >= bytes.size()) throw truncated();
-}
-
 /// Layer by layer, the parts of colours and vectors in their usual order.
 void sort_channels(std::vector<std::string>& names) {
   const auto key = [](const std::string& name) {
@@ -118,9 +83,8 @@ void sort_channels(std::vector<std::string>& names) {
             [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
 }
 
-/// The size of the image, checked against what the file can hold before anything of that size is allocated.
-std::pair<int, int> checked_size(const Imf::Header& header, std::size_t file_bytes, const std::string& file,
-                                 std::size_t max_pixels) {
+/// The size of the image, of which check_exr_attributes() has seen that the file can hold it.
+std::pair<int, int> checked_size(const Imf::Header& header, const std::string& file, std::size_t max_pixels) {
   const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
@@ -136,19 +100,13 @@ std::pair<int, int> checked_size(const Imf::Header& header, std::size_t file_byt
   if (pixels > max_pixels) {
     throw InputError(file, "", fmt::format("{} x {} pixels, at most {} are read", width, height, max_pixels));
   }
-  if (pixels * channels > (file_bytes * kMaxExpansion + kFreeBytes) / sizeof(float)) {
-    throw InputError(
-        file, "",
-        fmt::format("header announces {} x {} pixels of {} channels, more than {} bytes can hold", width,
-                    height, channels, file_bytes));
-  }
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
 /// Runs `decode` on the opened file; whatever the library throws about it is bad input.
 template <typename Decode>
 auto with_exr(std::span<const std::byte> bytes, const std::string& file, Decode decode) {
-  check_attribute_sizes(bytes, bytes.size(), file);
+  check_exr_attributes(bytes, bytes.size(), file);
   try {
     MemoryIn stream(bytes);
     Imf::InputFile in(stream);
@@ -224,13 +182,13 @@ void check_exr_header(const std::filesystem::path& file) {
   if (!stream.read(reinterpret_cast<char*>(head.data()), std::streamsize(head.size()))) {
     throw InputError(file.string(), "", "cannot be read");
   }
-  if (is_exr(head)) check_attribute_sizes(head, size, file.string());
+  if (is_exr(head)) check_exr_attributes(head, size, file.string());
 }
 
 Image decode_exr(std::span<const std::byte> bytes, const std::string& file, std::size_t max_pixels) {
   return with_exr(bytes, file, [&](Imf::InputFile& in) {
     const Imf::Header& header = in.header();
-    const auto [width, height] = checked_size(header, bytes.size(), file, max_pixels);
+    const auto [width, height] = checked_size(header, file, max_pixels);
     std::vector<std::string> names;
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) names.emplace_back(c.name());
     sort_channels(names);
