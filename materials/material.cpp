@@ -1,23 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "materials/material.h"
 
+#include <cmath>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
 namespace spectrace {
 
+namespace {
+
+/// Nearer to the horizon plane, squares of z underflow: the sum of two directions there has no length. NaN
+/// lies in it too.
+constexpr Float kLeastCosine = 1e-18F;
+
+bool is_in_horizon(Vec3 w) { return !(std::abs(w.z) >= kLeastCosine); }
+
+}  // namespace
+
 BsdfValue evaluate(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at) {
+  if (is_in_horizon(wo) || is_in_horizon(wi)) return {};
   return std::visit([&](const auto& m) { return m.evaluate(wo, wi, at); }, material);
 }
 
 LobeValues evaluate_lobes(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at) {
+  if (is_in_horizon(wo) || is_in_horizon(wi)) return {};
   return std::visit([&](const auto& m) { return m.evaluate_lobes(wo, wi, at); }, material);
 }
 
 std::optional<BsdfSample> sample(const Material& material, Vec3 wo, const BsdfRandom& u,
                                  const ShadingPoint& at) {
-  return std::visit([&](const auto& m) { return m.sample(wo, u, at); }, material);
+  if (is_in_horizon(wo)) return std::nullopt;
+  std::optional<BsdfSample> drawn = std::visit([&](const auto& m) { return m.sample(wo, u, at); }, material);
+  if (drawn && is_in_horizon(drawn->wi)) return std::nullopt;
+  return drawn;
 }
 
 bool is_delta(const Material& material) {
