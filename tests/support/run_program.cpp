@@ -73,6 +73,11 @@ ProgramResult run_program(const std::filesystem::path& program, const std::vecto
   pid_t child = 0;
   check(posix_spawn(&child, program.c_str(), actions.get(), nullptr, argv.data(), environ), "posix_spawn");
   if (signal.signal != 0) {
+    constexpr int kMostPolls = 3000;  // half a minute
+    for (int i = 0;
+         i < kMostPolls && !signal.after_file.empty() && !std::filesystem::exists(signal.after_file); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(signal.after_ms));
     kill(child, signal.signal);  // it may have ended: until it is waited for, its number is no one else's
   }

@@ -21,10 +21,11 @@ struct ProgramResult {
   [[nodiscard]] std::vector<std::string> error_lines() const;
 };
 
-/// Sent to a program once it has run for a while; 0: none.
+/// Sent to a program once it has made a file, where one is named, and has run for a while; 0: none.
 struct DelayedSignal {
   int signal = 0;
   int after_ms = 0;
+  std::filesystem::path after_file{};
 };
 
 /// Each argument reaches the program as it is; standard input is empty. `folder`, where given, is where it
