@@ -2,6 +2,7 @@
 # Language level, warnings and the switches of the whole build.
 option(SPECTRACE_BUILD_TESTS "Build the test programs" ON)
 option(SPECTRACE_BUILD_BENCH "Build the micro-benchmarks too (docs/validation.md)" OFF)
+option(SPECTRACE_BUILD_FUZZ "Build the fuzz targets; needs clang (docs/validation.md)" OFF)
 option(SPECTRACE_WERROR "Treat warnings as errors" OFF)
 option(SPECTRACE_DOUBLE "Build the light path in double precision (validation only)" OFF)
 set(SPECTRACE_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined or thread")

@@ -277,9 +277,17 @@ constexpr Features without_layers(Features f) {
   return f;
 }
 
+/// Those of this build: all, but for what tests/bench/unused_effects.py takes out.
+constexpr Features existing(Features f) {
+#ifdef SPECTRACE_WITHOUT_EFFECT
+  f.SPECTRACE_WITHOUT_EFFECT = false;
+#endif
+  return f;
+}
+
 template <Features kFeatures>
 constexpr Kernel make_kernel(std::string_view name) {
-  return {name, kFeatures, &render_tile<kFeatures>};
+  return {name, existing(kFeatures), &render_tile<existing(kFeatures)>};
 }
 
 constexpr std::array kKernels{

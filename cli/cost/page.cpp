@@ -191,7 +191,11 @@ std::string cost_page(const CostStudy& study) {
     separator = ", ";
   }
   html += ".</p>\n<h2>All settings</h2>\n" + settings_table(study);
-  html += "<h2>Bias by lobe and wavelength</h2>\n<p>Roots of relMSE [%].</p>\n" + parts_table(study);
+  html +=
+      "<h2>Bias by lobe and wavelength</h2>\n<p>Roots of relMSE [%]. A measurement as it is has no lobes, "
+      "all of it counts as specular: models move light "
+      "from there to diffuse.</p>\n" +
+      parts_table(study);
   html += "<h2>Seconds per effect</h2>\n" + svg(effects_chart(study));
   for (const std::string& reason : study.left_out) {
     html += fmt::format("<p>Left out: {}</p>\n", escaped(reason));
