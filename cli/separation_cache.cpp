@@ -11,6 +11,7 @@
 #include "core/base/cost.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/memory.h"
 #include "materials/measured_brdf.h"
 #include "materials/separated_lookup.h"
 #include "separation/compact.h"
@@ -19,7 +20,7 @@ namespace spectrace::cli {
 namespace {
 
 // To be raised whenever the same file and options would give other tables.
-constexpr int kMethodVersion = 8;
+constexpr int kMethodVersion = 9;
 constexpr std::size_t kHashDigits = 16;  // 64 bits: no two materials of one folder meet
 
 /// Everything but the thread count, which changes no bit of the result.
@@ -50,6 +51,9 @@ SeparationResult separate_bytes(std::span<const std::byte> bytes, const std::str
   std::optional<MeasuredBrdf> measured;
   const double seconds_read =
       seconds_of([&] { measured.emplace(measured_from_bytes(bytes, bsdf.string())); });
+  require_memory(separation_memory_bytes(options, measured->axis().size()), bsdf.string(), "",
+                 fmt::format("separating on a grid of {} x {} x {} cells", options.grid.n_theta_h,
+                             options.grid.n_theta_d, options.grid.n_phi_d));
   SeparationResult result = separate(*measured, options, progress);
   result.report.seconds_read = seconds_read;
   result.tables.source_name = bsdf.filename().string();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/math/math.h"
 #include "core/math/warp2d.h"
 #include "core/spectra/color.h"
@@ -249,6 +250,11 @@ MeasuredTables acquire(const BrdfSource& source, const AcquisitionOptions& optio
   if (const std::string problem = options.problem(); !problem.empty()) {
     throw InputError(options.description, "", problem);
   }
+  // Three copies of the spectra: as tables, as fields of the file, and as its bytes.
+  require_memory(3 * sizeof(float) * std::uint64_t(options.azimuths) * std::uint64_t(options.elevations) *
+                     source.axis().size() * std::uint64_t(options.table_size) *
+                     std::uint64_t(options.table_size),
+                 options.description, "", "a measurement of so many directions");
   Detector detector(source);
   const bool is_isotropic = options.azimuths == 1;
   if (is_isotropic && looks_anisotropic(detector)) {

@@ -58,6 +58,10 @@ class Film {
 
   Film(int width, int height, FilmLayout layout, SampleRange target);
 
+  /// What such a film comes to hold, and beside it the largest of its images while that is written.
+  [[nodiscard]] static std::uint64_t memory_bytes(int width, int height, const FilmLayout& layout,
+                                                  SampleRange target);
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] const FilmLayout& layout() const { return layout_; }

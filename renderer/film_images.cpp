@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,13 @@ namespace {
 constexpr std::array<const char*, 3> kRgb{"R", "G", "B"}, kXyzNames{"X", "Y", "Z"};
 
 double over(double sum, double count) { return count > 0 ? sum / count : 0; }
+
+/// What a channel holds of a number beyond its range: the largest that there is, and no infinity. Squares of
+/// 1e20 are among those (hard case H18).
+float to_channel(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(value, -kLargest, kLargest));
+}
 
 Rgb mean_rgb(const Xyz& sum, double count) {
   return xyz_to_rgb({over(sum[0], count), over(sum[1], count), over(sum[2], count)});
@@ -84,7 +92,7 @@ class ChannelWalk {
     if (names_ != nullptr) {
       names_->push_back(name.text());
     } else {
-      *out_++ = float(value());
+      *out_++ = to_channel(double(value()));
     }
   }
   template <typename Value>
@@ -170,6 +178,21 @@ void Film::for_each_total(const Visit& visit) const {
   }
 }
 
+std::uint64_t Film::memory_bytes(int width, int height, const FilmLayout& layout, SampleRange target) {
+  std::vector<std::string> names;
+  ChannelWalk(layout, names).walk();
+  std::size_t channels = names.size();
+  for (const Matte matte : kMattes) {
+    if (has_matte(layout.aovs, matte)) channels += matte_channels(matte).size();
+  }
+  if (layout.bins) channels = std::max(channels, layout.bins->count + kRgb.size());
+  const std::size_t plane =
+      layout.kept_slots().size() * sizeof(double) + layout.bins_per_pixel() * sizeof(float);
+  // An image, and the bytes of its file: noise does not compress.
+  const std::size_t image = 2 * channels * sizeof(float);
+  return std::uint64_t(width) * std::uint64_t(height) * (blocks_of(target.leaves()).size() * plane + image);
+}
+
 Image Film::resolve() const {
   std::vector<std::string> names;
   ChannelWalk(layout_, names).walk();
@@ -237,11 +260,11 @@ Image Film::resolve_spectral(Layer layer) const {
       const double valid = double(samples(tile)) - row(0);
       float* out = &image.data[pixel * image.channels.size()];
       for (double channel : mean_rgb({row(slot), row(slot + 1), row(slot + 2)}, valid))
-        *out++ = float(channel);
+        *out++ = to_channel(channel);
       for (std::size_t bin = 0; bin < bins.count; ++bin) {
         const double total =
             sum([&](const Plane& plane) { return plane.bins[pixel * stride + offset + bin]; });
-        *out++ = float(over(total, valid));
+        *out++ = to_channel(over(total, valid));
       }
     });
   }

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 
 namespace spectrace {
 
@@ -55,8 +56,11 @@ FilmLayout film_layout(const Scene& scene, const AovSet& aovs) {
 
 Film new_film(const Scene& scene, const RenderOptions& options) {
   const CropWindow window = scene.film.window();
-  return {window.width, window.height, film_layout(scene, gathered_aovs(options)),
-          SampleRange{options.first, options.first + std::uint64_t(options.spp)}};
+  FilmLayout layout = film_layout(scene, gathered_aovs(options));
+  const SampleRange target{options.first, options.first + std::uint64_t(options.spp)};
+  require_memory(Film::memory_bytes(window.width, window.height, layout, target), scene.file_name, "/film",
+                 fmt::format("{} x {} pixels with these AOVs and bins", window.width, window.height));
+  return {window.width, window.height, std::move(layout), target};
 }
 
 RenderSession::RenderSession(const Scene& scene, const RenderOptions& options)

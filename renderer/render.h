@@ -55,7 +55,8 @@ struct RenderResult {
 /// What the film of a scene keeps with these AOVs.
 [[nodiscard]] FilmLayout film_layout(const Scene& scene, const AovSet& aovs);
 
-/// An empty one: of the scene's window, for the samples asked for.
+/// An empty one: of the scene's window, for the samples asked for. Throws InputError where it would come to
+/// hold more memory than there is.
 [[nodiscard]] Film new_film(const Scene& scene, const RenderOptions& options);
 
 /// A render that can be watched, stopped and gone on with.

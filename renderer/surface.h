@@ -29,7 +29,7 @@ struct SurfaceQuery {
 /// Steps of float rounding, relative to the largest coordinate involved, that a new ray starts off the
 /// surface. Position from barycentric weights: 4; Embree's distance to a plane through vertices moved to the
 /// ray's origin: about 6; the offset itself: 1. Doubled, since those are estimates.
-/// tests/render/robustness_test.cpp finds self-hits at 4.
+/// tests/hard_cases/rays_test.cpp finds self-hits at 4.
 inline constexpr Float kOffsetSteps = 24;
 inline constexpr Float kFloatRounding = Float(0x1p-24);  // Embree computes in float whatever Float is
 

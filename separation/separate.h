@@ -126,6 +126,10 @@ struct SeparationResult {
   SeparationReport report;
 };
 
+/// What separate() comes to hold of a measurement with so many wavelengths, about.
+[[nodiscard]] std::uint64_t separation_memory_bytes(const SeparationOptions& options,
+                                                    std::size_t wavelengths);
+
 /// Never throws for what the data hold: `report.usable` tells. Invalid options are a programmer's error
 /// (check problem() first).
 SeparationResult separate(const MeasuredBrdf& measured, const SeparationOptions& options, Progress& progress);
