@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/output.h"
 #include "cli/render_output.h"
+#include "core/base/error.h"
 #include "renderer/partial_render.h"
 
 namespace spectrace::cli {
@@ -44,6 +45,14 @@ ExitCode merge_command(const Arguments& arguments) {
   if (arguments.output.file.extension() == ".partial") {
     write_partial(arguments.output.file, merged);
   } else {
+    // A part of a render may be looked at; a merge that begins late has lost its first part.
+    if (samples.first != 0) {
+      throw InputError(
+          arguments.output.file.string(), "",
+          fmt::format("would begin with sample {}: the parts before are missing; to join some of them, name "
+                      "the output .partial",
+                      samples.first));
+    }
     write_images(arguments.output, merged.film, merged.metadata);
   }
   fmt::print("{}: samples {}:{} of {} parts\n", arguments.output.file.string(), samples.first, samples.last,

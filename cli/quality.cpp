@@ -24,6 +24,11 @@ constexpr std::string_view kOtherImage = "wavelengths";
 /// As it would be at this scene's resolution.
 CostStudy measured_for(const SceneDesc& scene) {
   CostStudy study = read_cost_study(scene.quality.measurement);
+  if (const std::string content = content_of(scene); content != study.content) {
+    throw InputError(scene.quality.measurement.string(), "",
+                     fmt::format("measured on another scene, {} ({}); this one has {}", study.scene,
+                                 study.content, content));
+  }
   const double pixels =
       double(scene.film.width) * double(scene.film.height) / (double(study.width) * double(study.height));
   std::erase_if(study.records, [](const CostRecord& record) { return record.knob == kOtherImage; });

@@ -162,7 +162,7 @@ ExitCode render_command(Arguments arguments) {
   const RenderOptions options = render_options(arguments, scene);
   if (arguments.effects.only_list) {
     progress.finish();
-    print_effects(scene, options.aovs, options.forced);
+    print_effects(description, scene, options.aovs, options.forced);
     return ExitCode::kSuccess;
   }
   RenderSession session(scene, options, film_to_start_with(scene, options, arguments, progress));

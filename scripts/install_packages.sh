@@ -9,7 +9,7 @@ packages=(
   libembree-dev libopenexr-dev libopenimageio-dev openimageio-tools libtinyobjloader-dev
   libeigen3-dev libceres-dev libtbb-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libzstd-dev
-  libgtest-dev libbenchmark-dev libvalijson-dev python3 fonts-dejavu-core
+  libgtest-dev libbenchmark-dev librapidcheck-dev libvalijson-dev python3 fonts-dejavu-core
   "$@"
 )
 

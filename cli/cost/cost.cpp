@@ -35,6 +35,7 @@ struct Arguments {
 ExitCode cost_command(const Arguments& arguments) {
   ConsoleProgress progress(arguments.progress);
   const SceneDesc scene = load_scene(arguments.scene);
+  make_report_folder(arguments.output);
   const CostStudy study =
       measure_cost(scene, settings_of(scene, arguments.separation), arguments.options, progress);
   write_cost_report(arguments.output, study);

@@ -110,6 +110,7 @@ CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>&
   };
   CostStudy study;
   study.scene = description.file_name;
+  study.content = content_of(description);
   const double budget = options.budget_seconds * kMeasuringShare;
   const auto total = double(settings.size() + 1);
   progress.update("cost", 0, total);

@@ -31,7 +31,7 @@ struct CostRecord {
 };
 
 struct CostStudy {
-  std::string scene;
+  std::string scene, content;  ///< file, and content_of() it
   int width = 0, height = 0, threads = 0;
   int reference_spp = 0;
   double reference_seconds = 0;

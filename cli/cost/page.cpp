@@ -21,7 +21,8 @@ constexpr const char* kStyle =
     "#ddd}td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"
     ".views{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0;flex:1 1 260px;max-width:360px}"
     "img{width:100%;display:block;image-rendering:pixelated;background:#222}figcaption{font-size:13px}"
-    "[hidden]{display:none}#told{min-height:1.5em;font-weight:bold}code{background:#f2f2f2}";
+    "[hidden]{display:none}#told{min-height:1.5em;font-weight:bold;position:sticky;top:0;background:#fff}"
+    "code{background:#f2f2f2}";
 
 // Shows the plot of the metric that is chosen, and tells what the pointer is on.
 constexpr const char* kScript =

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <system_error>
 
 #include "cli/cost/page.h"
 #include "cli/cost/study_json.h"
+#include "core/base/error.h"
 #include "core/base/file.h"
 
 namespace spectrace::cli {
@@ -29,8 +31,13 @@ std::string csv_of(const CostStudy& study) {
 
 }  // namespace
 
+void make_report_folder(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw InputError(folder.string(), "", "cannot make this folder: " + failed.message());
+}
+
 void write_cost_report(const std::filesystem::path& folder, const CostStudy& study) {
-  std::filesystem::create_directories(folder);
   write_file_atomically(folder / "cost.json", json_of(study));
   write_file_atomically(folder / "cost.csv", csv_of(study));
   for (const CostMetric& metric : kCostMetrics) {

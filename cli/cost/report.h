@@ -8,7 +8,8 @@
 
 namespace spectrace::cli {
 
-/// The folder is made where it is absent.
+/// Makes the folder where it is absent; throws InputError where it cannot be.
+void make_report_folder(const std::filesystem::path& folder);
 void write_cost_report(const std::filesystem::path& folder, const CostStudy& study);
 
 }  // namespace spectrace::cli

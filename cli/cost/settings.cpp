@@ -59,6 +59,13 @@ Setting without(std::string_view effect) {
 
 }  // namespace
 
+std::string content_of(const SceneDesc& scene) {
+  std::vector<std::string> names;
+  for (const MaterialDesc& material : scene.materials) names.push_back(material.name);
+  return fmt::format("{}; {} shapes, {} lights, path depth {}", fmt::join(names, ", "), scene.shapes.size(),
+                     scene.lights.size(), scene.integrator.max_depth);
+}
+
 std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& separation) {
   std::vector<Setting> settings{{"exact", "exact", [](SceneDesc&, Progress&) {}}};
   if (has_measured(scene)) {

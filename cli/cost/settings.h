@@ -26,6 +26,10 @@ struct Setting {
   [[nodiscard]] std::string title() const { return title_of(knob, name); }
 };
 
+/// What tells scenes apart, in words: "ball, floor; 4 shapes, 1 light, path depth 6". The same for a scene
+/// with another camera, resolution or number of samples.
+[[nodiscard]] std::string content_of(const SceneDesc& scene);
+
 /// The scene as it is, first; then every step of every knob that the scene has. `separation`: grid and cache
 /// of separated models.
 [[nodiscard]] std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& separation);

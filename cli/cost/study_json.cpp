@@ -38,6 +38,7 @@ std::string json_of(const CostStudy& study) {
   json.begin_object();
   json.member("program", fmt::format("{} ({})", version(), commit()));
   json.member("scene", study.scene);
+  json.member("content", study.content);
   json.member("width", study.width);
   json.member("height", study.height);
   json.member("threads", study.threads);
@@ -99,6 +100,7 @@ CostStudy read_cost_study(const std::filesystem::path& file) {
   const JsonValue root = document.root();
   CostStudy study;
   study.scene = root.require("scene").string();
+  study.content = root.require("content").string();
   study.width = int(root.require("width").integer(1, 1, kMostPixels));
   study.height = int(root.require("height").integer(1, 1, kMostPixels));
   study.threads = int(root.require("threads").integer(1, 1, kMostPixels));

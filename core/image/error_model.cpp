@@ -61,16 +61,23 @@ template <typename Term>
 Estimate mean_over(const IndependentPair& test, const IndependentPair& reference, const Term& term) {
   const std::size_t count = test.first.data.size();
   for (const Image* other : {&test.second, &reference.first, &reference.second}) {
-    SPECTRACE_CHECK(other->width == test.first.width && other->data.size() == count && count >= 2);
+    SPECTRACE_CHECK(other->width == test.first.width && other->data.size() == count);
   }
+  // A pixel's channels share their samples: it is pixels that are independent.
+  const std::size_t channels = test.first.channels.size();
+  SPECTRACE_CHECK(count >= 2 * channels);
   double sum = 0, squares = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = term(double(test.first.data[i]), double(test.second.data[i]),
-                          double(reference.first.data[i]), double(reference.second.data[i]));
+  for (std::size_t pixel = 0; pixel < count; pixel += channels) {
+    double x = 0;
+    for (std::size_t i = pixel; i < pixel + channels; ++i) {
+      x += term(double(test.first.data[i]), double(test.second.data[i]), double(reference.first.data[i]),
+                double(reference.second.data[i])) /
+           double(channels);
+    }
     sum += x;
     squares += x * x;
   }
-  const double n = double(count), mean = sum / n;
+  const double n = double(count / channels), mean = sum / n;
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
 }
 

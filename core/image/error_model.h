@@ -23,7 +23,7 @@ struct Estimate {
 
 /// The part of relMSE that is bias: mean((a - r1)(b - r2) / (r² + epsilon)) with r = (r1 + r2) / 2, to which
 /// noise adds nothing on average, since no two of the four share any; so it may come out below 0. All of one
-/// size and channel count, at least two values: checked.
+/// size and channel count, at least two pixels: checked.
 [[nodiscard]] Estimate bias_rel_mse(const IndependentPair& test, const IndependentPair& reference,
                                     double epsilon);
 /// The relMSE that noise leaves in the mean of the pair: mean((r1 - r2)² / 4 / (r² + epsilon)).

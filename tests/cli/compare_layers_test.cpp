@@ -216,8 +216,9 @@ TEST_F(CompareLayers, FailOnAnyValueThatIsNoNumber) {
     const std::string b = file("bad.exr", broken);
     // Each in the test image or in the reference, whatever is asked for.
     const bool in_test = channel % 2 == 0;
-    EXPECT_EQ(run({"compare", in_test ? c : b, in_test ? b : c, "--layer", "beauty", "--max", "mse=9"}).exit_code,
-              1)
+    EXPECT_EQ(
+        run({"compare", in_test ? c : b, in_test ? b : c, "--layer", "beauty", "--max", "mse=9"}).exit_code,
+        1)
         << channels[channel];
   }
   const std::string all = file("all.exr", constant(kNan, channels));

@@ -65,6 +65,8 @@ TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
 TEST_F(Cost, RefusesWhatItCannotRead) {
   expect_bad_input({"cost", "none.json", "-o", "report"}, "none.json");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
+  write_lambert_scene("ball.json");
+  expect_bad_input({"cost", "ball.json", "-o", "ball.json"}, "ball.json: cannot make this folder");
 }
 
 }  // namespace

@@ -17,10 +17,12 @@ class QualityKey : public Program {
     text.replace(text.find(sampler), sampler.size(), "\"quality\": " + quality);
     write_text(folder_ / "ball.json", text);
   }
-  void write_measurement(const std::string& settings) const {
-    write_text(folder_ / "cost.json", R"({"scene": "ball.json", "width": 16, "height": 16, "threads": 2,
+  void write_measurement(const std::string& settings, int depth = 8) const {
+    write_text(folder_ / "cost.json",
+               R"({"scene": "ball.json", "content": "m; 1 shapes, 1 lights, path depth )" +
+                   std::to_string(depth) + R"(", "width": 16, "height": 16, "threads": 2,
 "reference_rel_mse": 1e-9, "settings": [)" +
-                                          settings + "]}");
+                   settings + "]}");
   }
   static std::string setting(const std::string& knob, const std::string& name, const std::string& noise,
                              const std::string& bias, const std::string& seconds) {
@@ -72,6 +74,8 @@ TEST_F(QualityKey, RefusesWhatCannotBe) {
   expect_bad_input({"ball.json", "-o", "out.exr"}, "cost.json: no setting reaches");
   write_measurement(setting("model", "sun", "0.04", "0", "0.01"));
   expect_bad_input({"ball.json", "-o", "out.exr"}, "cost.json: its best setting is \"model sun\"");
+  write_measurement(setting("exact", "exact", "0.04", "0", "0.04"), 7);
+  expect_bad_input({"ball.json", "-o", "out.exr"}, "cost.json: measured on another scene, ball.json");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.exr"));
 }
 
