@@ -13,6 +13,7 @@
 #include "core/base/json.h"
 #include "core/base/version.h"
 #include "materials/tensor_file.h"
+#include "renderer/words_hash.h"
 
 namespace spectrace {
 
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDescription = "spectrace partial render, format 1";
+constexpr const char* kDescription = "spectrace partial render, format 2";
 constexpr std::int64_t kMaxSide = 65536, kMaxSamples = std::int64_t(1) << 40;
 constexpr std::int64_t kMaxBins = 1000;
 
@@ -227,6 +228,38 @@ MatteCounts read_matte(Matte matte, const TensorFile& in) {
   return counts;
 }
 
+constexpr const char* kChecksum = "checksum";
+
+/// Of all other fields: a damaged sum would be a wrong picture that looks like a right one.
+std::uint64_t checksum_of(const std::vector<Tensor>& tensors) {
+  std::uint64_t h = WordsHash::kStart;
+  const auto add_bytes = [&h](const void* bytes, std::size_t size) {
+    const auto* at = static_cast<const std::byte*>(bytes);
+    for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, at + i, std::min(size - i, sizeof(word)));
+      h = WordsHash::add(h, word);
+    }
+    h = WordsHash::add(h, size);
+  };
+  for (const Tensor& tensor : tensors) {
+    if (tensor.name == kChecksum) continue;
+    add_bytes(tensor.name.data(), tensor.name.size());
+    for (const std::size_t extent : tensor.shape) h = WordsHash::add(h, extent);
+    add_bytes(tensor.bytes.data(), tensor.bytes.size());
+  }
+  return h;
+}
+
+/// Last of all: what is wrong with a field is said by its name first.
+void check_whole(const TensorFile& in) {
+  const TensorType u64[1] = {TensorType::kU64};
+  const std::size_t one[1] = {1};
+  const std::uint64_t found = from_tensor<std::uint64_t>(in.require(kChecksum, u64, one)).front();
+  if (found != checksum_of(in.tensors()))
+    throw InputError(in.file_name(), "", "is damaged: its content is not what was written");
+}
+
 std::string describe(const std::vector<std::string>& approximations) {
   return approximations.empty() ? "exact" : fmt::format("{}", fmt::join(approximations, "; "));
 }
@@ -259,6 +292,7 @@ void write_partial(const fs::path& file, const PartialRender& partial) {
   for (const Matte matte : kMattes) {
     if (has_matte(film.layout().aovs, matte)) write_matte(matte, film.matte_counts(matte), out);
   }
+  out.add(to_tensor(kChecksum, TensorType::kU64, {1}, std::vector{checksum_of(out.tensors())}));
   out.write(file);
 }
 
@@ -293,6 +327,7 @@ PartialRender read_partial(const fs::path& file) {
     throw InputError(name, "field ends",
                      "does not fit the range of samples and the fields rows_* and crypto_*");
   }
+  check_whole(in);
   return {.identity = std::move(header.identity),
           .metadata = std::move(header.metadata),
           .film = std::move(film)};

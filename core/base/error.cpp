@@ -19,11 +19,26 @@ std::string join_lines(const std::vector<Diagnostic>& diagnostics) {
   return text;
 }
 
+/// Bytes of a part of a message; beyond it a damaged file is quoted, of which its two ends are enough.
+constexpr std::size_t kLongestPart = 500, kHead = 300, kTail = 150;
+
+std::string shortened(const std::string& text) {
+  if (text.size() <= kLongestPart) return text;
+  const auto is_inside_character = [&](std::size_t i) {
+    return (static_cast<unsigned char>(text[i]) & 0xc0U) == 0x80;  // a continuation byte of UTF-8
+  };
+  std::size_t head = kHead, tail = text.size() - kTail;
+  while (head > kHead - 4 && is_inside_character(head)) --head;
+  while (tail < text.size() - kTail + 4 && is_inside_character(tail)) ++tail;
+  return fmt::format("{} ... ({} bytes) ... {}", text.substr(0, head), tail - head, text.substr(tail));
+}
+
 }  // namespace
 
 std::string Diagnostic::text() const {
-  std::string line =
-      where.empty() ? fmt::format("{}: {}", file, problem) : fmt::format("{}:{}: {}", file, where, problem);
+  const std::string what = shortened(problem);
+  std::string line = where.empty() ? fmt::format("{}: {}", file, what)
+                                   : fmt::format("{}:{}: {}", file, shortened(where), what);
   // One diagnostic, one line, whatever a hostile file has put into a name that we quote.
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';

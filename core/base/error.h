@@ -15,7 +15,7 @@ struct Diagnostic {
   std::string where;    ///< "41:18: /materials/2/roughness", "byte 812: field \"vndf\"", or empty
   std::string problem;  ///< what was expected and what was found
 
-  /// `file:where: problem`, in one line.
+  /// `file:where: problem`, in one line, however long what a damaged file has put into it.
   [[nodiscard]] std::string text() const;
 };
 

@@ -84,6 +84,15 @@ TEST_F(BadInput, ADamagedNameIsNotQuotedWhole) {
   EXPECT_LT(result.errors.size(), 400U);
 }
 
+TEST_F(BadInput, ALongKeyIsNotQuotedWhole) {
+  write_text(folder_ / "scene.json", "{\"camera\": {\"" + std::string(200'000, '(') + "\": 1}}");
+  const ProgramResult result = run({"scene.json"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(result.complains("scene.json:1:13: /camera/((("));
+  EXPECT_TRUE(result.complains("bytes) ..."));
+  EXPECT_LT(result.errors.size(), 10'000U);
+}
+
 TEST_F(BadInput, HostileJson) {
   for (const std::string& text :
        {std::string(100000, '['), std::string(R"({"camera": 1e400})"),

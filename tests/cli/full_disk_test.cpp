@@ -5,24 +5,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <system_error>
 
 #include "tests/cli/program.h"
 
 namespace spectrace::test {
 namespace {
-
-using Files = std::map<std::string, std::string>;  // content by name
-
-Files files_in(const std::filesystem::path& folder) {
-  Files files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file())
-      files[entry.path().lexically_relative(folder).string()] = read_text(entry.path());
-  }
-  return files;
-}
 
 /// Inputs beside a folder "disk", in which every command writes its output.
 class FullDisk : public Program {

@@ -21,6 +21,19 @@ TEST(InputError, KeepsAHostileNameOnOneLine) {
   EXPECT_STREQ(error.what(), "a b:1:1: key \"x  [2J\"");
 }
 
+TEST(InputError, QuotesTheEndsOfWhatIsTooLongInWholeCharacters) {
+  std::string name;
+  for (int i = 0; i < 1000; ++i) name += "\xe2\x82\xac";  // a character of three bytes
+  for (const char* shift : {"", "x", "xx"}) {
+    const std::string text = InputError("a", "", shift + name).what();
+    EXPECT_LT(text.size(), 500U);
+    EXPECT_NE(text.find("bytes) ..."), std::string::npos) << text;
+    std::size_t bytes_of_name = 0;
+    for (const char c : text) bytes_of_name += static_cast<unsigned char>(c) >= 0x80 ? 1 : 0;
+    EXPECT_EQ(bytes_of_name % 3, 0U) << text;
+  }
+}
+
 TEST(InputError, NeedsADiagnostic) { EXPECT_THROW(InputError(std::vector<Diagnostic>{}), InternalError); }
 
 TEST(Check, ThrowsWithExpressionFileAndLine) {

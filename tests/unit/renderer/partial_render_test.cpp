@@ -100,7 +100,7 @@ TEST_F(PartialRenders, AreNotMergedWhereTheyAreNotPartsOfOneImage) {
   EXPECT_NE(refusal({a, bins}).find("wavelengths"), std::string::npos) << refusal({a, bins});
 }
 
-TEST_F(PartialRenders, DamageIsRefusedWithTheField) {
+TEST_F(PartialRenders, DamageIsRefused) {
   const std::vector<std::byte> bytes = read_file(written("a.partial", part(0, 16)));
   const auto write = [&](const char* name, std::span<const std::byte> content) {
     std::ofstream(folder_ / name, std::ios::binary)
@@ -110,16 +110,12 @@ TEST_F(PartialRenders, DamageIsRefusedWithTheField) {
     write("cut.partial", std::span(bytes).first(size));
     EXPECT_THROW((void)read_partial(folder_ / "cut.partial"), InputError) << size;
   }
-  // A byte of the header changed: refused, or a part of something else; never a crash.
-  for (std::size_t i = 0; i < std::min<std::size_t>(bytes.size(), 4000); i += 7) {
+  // A byte of the header changed, or of the sums: a wrong picture would look like a right one.
+  for (std::size_t i = 0; i < bytes.size(); i += i < 4000 ? 7 : 4999) {
     std::vector<std::byte> damaged = bytes;
     damaged[i] ^= std::byte{0x15};
     write("flipped.partial", damaged);
-    try {
-      (void)read_partial(folder_ / "flipped.partial").film.resolve();
-    } catch (const InputError& e) {
-      EXPECT_FALSE(e.diagnostics().front().text().empty());
-    }
+    EXPECT_THROW((void)read_partial(folder_ / "flipped.partial"), InputError) << "byte " << i;
   }
 }
 
