@@ -246,7 +246,7 @@ void add_separation_options(CLI::App& app, SceneSeparation& separation) {
   app.add_option("--separate", separation.model,
                  "separate every measured material first and render it with this model; auto: the "
                  "cheapest within --tolerance")
-      ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "auto"}));
+      ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "analytic", "auto"}));
   app.add_option("--tolerance", separation.tolerance,
                  "of --separate auto: share of the reflected light a model may get wrong")
       ->check(CLI::Range(0.0, 1.0))

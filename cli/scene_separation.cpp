@@ -33,12 +33,15 @@ fs::path default_cache() {
 
 bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Progress& progress) {
   const fs::path cache = separation.cache.empty() ? default_cache() : fs::path(separation.cache);
-  const std::optional<SeparationModel> model = separation_model_named(separation.model);  // none: auto
+  const bool is_analytic = separation.model == kAnalyticModel;
+  const std::optional<SeparationModel> model =
+      separation_model_named(separation.model);  // none: auto, analytic
   SeparationOptions options;
   options.grid = separation.grid;
   options.threads = separation.threads;
   const bool may_need_residual = separation.model == "auto" || model == SeparationModel::kResidual;
   options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
+  options.analytic = is_analytic;
   std::size_t count = 0;
   std::vector<MaterialDesc*> materials;
   for (MaterialDesc& whole : scene.materials) {
@@ -66,8 +69,9 @@ bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Pro
         material.kind = MeasuredDesc{measured->file, directions};
         continue;
       }
-      SeparatedDesc description{.file = separated.file, .model = model, .directions = directions};
-      if (!model) {
+      SeparatedDesc description{
+          .file = separated.file, .model = model, .analytic = is_analytic, .directions = directions};
+      if (!model && !is_analytic) {
         const ModelChoice choice = choose_model(MeasuredBrdf(read_measured(measured->file)),
                                                 read_separated_source(separated.file), separation.tolerance);
         progress.note(fmt::format("{}: model {}", material.name, choice.reason));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/base/progress.h"
 #include "materials/half_difference_grid.h"
@@ -12,8 +13,11 @@
 
 namespace spectrace::cli {
 
+/// Lambert + GGX at each wavelength (sec. 5.3 of the paper), among the models' names.
+inline constexpr std::string_view kAnalyticModel = "analytic";
+
 struct SceneSeparation {
-  std::string model;  ///< a model's name, "auto", or empty: none
+  std::string model;  ///< a model's name, "analytic", "auto", or empty: none
   double tolerance = kDefaultTolerance;
   HalfDifferenceGrid grid;
   int quality = kDefaultQuality;  ///< of the compact tables

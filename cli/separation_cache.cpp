@@ -26,10 +26,12 @@ constexpr std::size_t kHashDigits = 16;  // 64 bits: no two materials of one fol
 /// Everything but the thread count, which changes no bit of the result.
 std::string key_of(const std::string& file_sha256, const SeparationOptions& o, int quality) {
   const std::string text = fmt::format(
-      "{} v{} grid {} {} {} {} weight {} eps {} starts {} prior {} {} {} {} terms {} {} quality {}",
+      "{} v{} grid {} {} {} {} weight {} eps {} starts {} prior {} {} {} {} terms {} {} quality {} analytic "
+      "{}",
       file_sha256, kMethodVersion, o.grid.n_theta_h, o.grid.n_theta_d, o.grid.n_phi_d,
       o.grid.quadratic_theta_h, static_cast<int>(o.weight), o.epsilon, o.starts, o.diffraction_prior,
-      name_of(o.diffuse), name_of(o.residual), name_of(o.colour), o.residual_rank, o.reciprocal, quality);
+      name_of(o.diffuse), name_of(o.residual), name_of(o.colour), o.residual_rank, o.reciprocal, quality,
+      o.analytic);
   return sha256_hex(std::as_bytes(std::span(text))).substr(0, kHashDigits);
 }
 

@@ -62,6 +62,8 @@ void add_cost(CLI::App& app, Action& chosen) {
   command->add_option("--budget", arguments->options.budget_seconds, "seconds to take")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command->add_option("--reference", arguments->options.reference,
+                      "picture (.exr) to take for the truth, instead of rendering one; must have R, G, B");
   command->add_option("--threads", arguments->options.threads, "0 = all cores")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();

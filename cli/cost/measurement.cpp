@@ -69,6 +69,18 @@ Reference reference_of(Image first, Image second) {
   return {std::move(first), std::move(second), std::move(mean), metrics, exposure};
 }
 
+/// R, G, B of a file, as large as what is rendered.
+Image given_reference(const std::string& file, const CropWindow& window) {
+  const std::array<std::string, 3> channels{"R", "G", "B"};
+  Image given = read_image(file).select(channels, file);
+  if (given.width != window.width || given.height != window.height) {
+    throw InputError(file, "",
+                     fmt::format("has {} x {} pixels, the scene {} x {}", given.width, given.height,
+                                 window.width, window.height));
+  }
+  return given;
+}
+
 /// Renders at 8, 16, 32 ... samples while the time lasts, each with a seed of its own: points that shared
 /// samples would share their errors.
 CostRecord measure(const Setting& setting, const Scene& scene, const Reference& reference, double seconds,
@@ -120,13 +132,18 @@ CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>&
     const Scene scene = build_scene(description, progress);
     const RenderReport probe = render_at(scene, kProbeSpp, kReferenceSeed, options).report;
     seconds_a_sample = std::max(probe.seconds, 1e-3) / kProbeSpp;
-    const double affordable = kReferenceShare * budget / seconds_a_sample;
-    study.reference_spp = std::max(kLeastReferenceSpp, int(std::min(affordable, 1e6)) / 16 * 16);
-    const RenderResult first = render_at(scene, study.reference_spp / 2, kReferenceSeed, options);
-    const RenderResult second = render_at(scene, study.reference_spp / 2, kReferenceSeed + 1, options);
-    reference = reference_of(beauty_of(first), beauty_of(second));
-    study.reference_seconds = first.report.seconds + second.report.seconds;
-    study.threads = first.report.threads;
+    if (!options.reference.empty()) {
+      const Image given = given_reference(options.reference, description.film.window());
+      reference = reference_of(given, given);
+    } else {
+      const double affordable = kReferenceShare * budget / seconds_a_sample;
+      study.reference_spp = std::max(kLeastReferenceSpp, int(std::min(affordable, 1e6)) / 16 * 16);
+      const RenderResult first = render_at(scene, study.reference_spp / 2, kReferenceSeed, options);
+      const RenderResult second = render_at(scene, study.reference_spp / 2, kReferenceSeed + 1, options);
+      reference = reference_of(beauty_of(first), beauty_of(second));
+      study.reference_seconds = first.report.seconds + second.report.seconds;
+    }
+    study.threads = probe.threads;
   }
   const PartPair reference_parts =
       render_parts(description, kReferencePartSpp, kReferenceSeed + 2, options.threads, progress);

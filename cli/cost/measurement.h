@@ -33,7 +33,7 @@ struct CostRecord {
 struct CostStudy {
   std::string scene, content;  ///< file, and content_of() it
   int width = 0, height = 0, threads = 0;
-  int reference_spp = 0;
+  int reference_spp = 0;  ///< 0: it was given
   double reference_seconds = 0;
   double reference_rel_mse = 0;  ///< its own noise
   double epsilon = 0;            ///< of relMSE: kRelativeEpsilon of the reference
@@ -45,6 +45,7 @@ struct CostStudy {
 
 struct CostOptions {
   double budget_seconds = 120;  ///< of all renders together
+  std::string reference{};      ///< picture to take for the truth; empty: one is rendered
   int threads = 0;
 };
 

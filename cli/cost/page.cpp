@@ -48,6 +48,15 @@ double noise_of(const CostRecord& record) {
   return record.model.rel_mse(record.points.front().spp) - record.model.bias;
 }
 
+std::string reference_text(const CostStudy& study) {
+  if (study.reference_spp == 0) return "Reference: a picture that was given, taken as free of noise.";
+  return fmt::format(
+      "Reference: the scene as it is, {} samples, {:.1f} s, seed of its own; its noise is a relMSE of "
+      "{:.2g}, "
+      "which all measured errors hold.",
+      study.reference_spp, study.reference_seconds, study.reference_rel_mse);
+}
+
 std::string settings_table(const CostStudy& study) {
   const CostRecord& exact = study.records.front();
   std::string html =
@@ -167,14 +176,11 @@ std::string cost_page(const CostStudy& study) {
   std::string html = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>What accuracy costs: {0}</title>"
       "<style>{1}</style>\n<h1>What accuracy costs: {0}</h1>\n"
-      "<p>{2} x {3} pixels on {4} threads, spectrace {5} ({6}). Reference: the scene as it is, {7} samples, "
-      "{8:.1f} s, seed of its own; its noise is a relMSE of {9:.2g}, which all measured errors hold. Lines "
-      "are "
-      "fits: relMSE = noise &middot; samples^-exponent + bias + that of the reference, seconds = start + "
-      "samples &middot; "
-      "time a sample.</p>\n",
+      "<p>{2} x {3} pixels on {4} threads, spectrace {5} ({6}). {7} Lines are fits: relMSE = noise &middot; "
+      "samples^-exponent + bias + that of the reference, seconds = start + samples &middot; time a "
+      "sample.</p>\n",
       escaped(study.scene), kStyle, study.width, study.height, study.threads, version(), commit(),
-      study.reference_spp, study.reference_seconds, study.reference_rel_mse);
+      reference_text(study));
   html += "<h2>Error against time</h2>\n<p><label>metric <select id=\"metric\">";
   for (const CostMetric& metric : kCostMetrics) {
     html += fmt::format("<option value=\"{}\">{}</option>", metric.id, metric.title);

@@ -69,7 +69,7 @@ std::string content_of(const SceneDesc& scene) {
 std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& separation) {
   std::vector<Setting> settings{{"exact", "exact", [](SceneDesc&, Progress&) {}}};
   if (has_measured(scene)) {
-    for (const char* model : {"residual", "diffraction", "fresnel", "sun"}) {
+    for (const char* model : {"residual", "diffraction", "fresnel", "sun", "analytic"}) {
       settings.push_back(with_model(model, separation));
     }
     for (const int quality : {1, 3, 11}) settings.push_back(with_sep_quality(quality, separation));

@@ -62,6 +62,21 @@ TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
   EXPECT_NE(page.find("data-label=\"exact, 8 samples"), std::string::npos);
 }
 
+TEST_F(Cost, TakesAReferenceThatIsGiven) {
+  write_lambert_scene("ball.json");
+  ASSERT_EQ(run({"ball.json", "-o", "truth.exr", "--spp", "1024", "--seed", "9"}).exit_code, 0);
+  ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "1", "--reference", "truth.exr"}).exit_code,
+            0);
+  const auto settings = settings_in(folder_ / "report" / "cost.json");
+  // What noise the truth has itself, well below 1 % of the squared mean, counts as bias here.
+  EXPECT_NEAR(settings.at("exact exact").bias, 0, 1e-4);
+  EXPECT_NEAR(settings.at("without environment").bias, 1, 0.1);
+  write_text(folder_ / "small.json",
+             read_text(folder_ / "ball.json").replace(read_text(folder_ / "ball.json").find("16"), 2, "12"));
+  expect_bad_input({"cost", "small.json", "-o", "report", "--reference", "truth.exr"},
+                   "truth.exr: has 16 x 16 pixels");
+}
+
 TEST_F(Cost, RefusesWhatItCannotRead) {
   expect_bad_input({"cost", "none.json", "-o", "report"}, "none.json");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
