@@ -20,9 +20,11 @@ namespace {
 
 /// Of the budget: the reference's share. The error of a setting with as much noise as the exact one is then
 /// told from its own at a few times the samples.
-constexpr double kReferenceShare = 0.4;
+constexpr double kReferenceShare = 0.3;
 /// What is left to write the report in.
 constexpr double kMeasuringShare = 0.95;
+/// Settings that would begin later are left out.
+constexpr double kMostOverdraft = 1.1;
 constexpr int kFewestPoints = 3, kMostPoints = 10;
 /// Where the budget has no time for three: a line goes through two.
 constexpr int kFewestPointsInHaste = 2;
@@ -158,14 +160,19 @@ CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>&
   };
   if (const double least = elapsed() + needed(kFewestPointsInHaste) * double(settings.size());
       least > budget) {
-    progress.note(fmt::format("{:.0f} s are too few for {} settings of this scene: it will be about {:.0f} s",
-                              options.budget_seconds, settings.size(), least));
+    progress.note(
+        fmt::format("{:.0f} s are too few for {} settings of this scene: it would take about {:.0f} s",
+                    options.budget_seconds, settings.size(), least));
   }
   for (const Setting& setting : settings) {
     progress.update("cost", double(&setting - settings.data()) + 1, total);
     const double settings_left = total - 1 - double(&setting - settings.data());
     const double each = (budget - elapsed()) / settings_left;
     const int fewest_points = needed(kFewestPoints) <= each ? kFewestPoints : kFewestPointsInHaste;
+    if (!study.records.empty() && elapsed() > kMostOverdraft * options.budget_seconds) {
+      study.left_out.push_back(fmt::format("{}: no time left", setting.title()));
+      continue;
+    }
     SceneDesc changed = description;
     try {
       setting.apply(changed, progress);

@@ -30,7 +30,7 @@ std::map<std::string, Figures> settings_in(const std::filesystem::path& file) {
 
 TEST_F(Cost, TellsTheBiasOfWhatIsLeftOut) {
   write_lambert_scene("ball.json");
-  const ProgramResult result = run({"cost", "ball.json", "-o", "report", "--budget", "1"});
+  const ProgramResult result = run({"cost", "ball.json", "-o", "report", "--budget", "3"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_TRUE(result.says("report/index.html")) << result.output;
   const auto settings = settings_in(folder_ / "report" / "cost.json");
@@ -50,7 +50,7 @@ TEST_F(Cost, TellsTheBiasOfWhatIsLeftOut) {
 
 TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
   write_lambert_scene("ball.json");
-  ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "1"}).exit_code, 0);
+  ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "3"}).exit_code, 0);
   for (const char* file :
        {"cost.csv", "cost.json", "effects.svg", "ciede2000.svg", "mape.svg", "psnr_db.svg", "rel_mse.svg"}) {
     EXPECT_FALSE(read_text(folder_ / "report" / file).empty()) << file;
@@ -65,7 +65,7 @@ TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
 TEST_F(Cost, TakesAReferenceThatIsGiven) {
   write_lambert_scene("ball.json");
   ASSERT_EQ(run({"ball.json", "-o", "truth.exr", "--spp", "1024", "--seed", "9"}).exit_code, 0);
-  ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "1", "--reference", "truth.exr"}).exit_code,
+  ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "3", "--reference", "truth.exr"}).exit_code,
             0);
   const auto settings = settings_in(folder_ / "report" / "cost.json");
   // What noise the truth has itself, well below 1 % of the squared mean, counts as bias here.
