@@ -27,7 +27,8 @@ constexpr const char* kNotes =
     "\n"
     "The image has the bits that one machine gives, in whatever order the parts are named. Parts must be of "
     "one\n"
-    "scene, seed, build and set of AOVs, complete, without overlap or gap. With -o OUT.partial the whole is\n"
+    "scene, seed, sampler, build and set of AOVs, complete, without overlap or gap. With -o OUT.partial the "
+    "whole is\n"
     "written as a part again.";
 
 struct Arguments {

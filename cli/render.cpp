@@ -22,6 +22,7 @@
 #include "cli/quality.h"
 #include "cli/render_loop.h"
 #include "cli/render_output.h"
+#include "cli/sampler_option.h"
 #include "cli/scene_separation.h"
 #include "core/base/error.h"
 #include "core/image/tev_view.h"
@@ -44,6 +45,7 @@ struct Arguments {
   std::optional<int> spp;
   std::optional<SampleRange> samples;
   std::optional<std::uint64_t> seed;
+  std::optional<SamplerKind> sampler;
   std::optional<AovSet> aovs;
   int threads = 0;
   double seconds = 0, relative_error = 0;
@@ -156,6 +158,7 @@ ExitCode render_command(Arguments arguments) {
   }
   // Roulette follows the throughput: with it paths of different materials would part.
   if (arguments.separation.paired) description.integrator.roulette_depth = description.integrator.max_depth;
+  if (arguments.sampler) description.sampler = *arguments.sampler;
   arguments.effects.apply(description, progress);
   set_quality(arguments, description, progress);
   const Scene scene = build_scene(description, progress);
@@ -286,6 +289,7 @@ void add_render(CLI::App& app, Action& chosen) {
   add_output_options(app, *arguments);
   add_sample_options(app, *arguments);
   app.add_option("--seed", arguments->seed, "of the random numbers; default: the scene's");
+  add_sampler_option(app, arguments->sampler);
   app.add_option("--threads", arguments->threads, "0 = all cores; changes no bit of the image")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();

@@ -227,7 +227,9 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
       block.clear();
       for (std::uint64_t first = samples.first; first < samples.last; first += kLeafSamples) {
         const std::uint64_t end = std::min(samples.last, first + kLeafSamples);
-        for (std::uint64_t i = first; i < end; ++i) pack.add(Sampler(pixel, i, job.seed), image_x, image_y);
+        for (std::uint64_t i = first; i < end; ++i) {
+          pack.add(Sampler(pixel, i, job.seed, job.scene.sampler), image_x, image_y);
+        }
         pack.trace();
         leaf.clear();
         pack.finish(leaf, mattes);

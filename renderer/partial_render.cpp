@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDescription = "spectrace partial render, format 2";
+constexpr const char* kDescription = "spectrace partial render, format 3";
 constexpr std::int64_t kMaxSide = 65536, kMaxSamples = std::int64_t(1) << 40;
 constexpr std::int64_t kMaxBins = 1000;
 
@@ -79,6 +79,7 @@ std::string header_text(const PartialRender& partial) {
   write_names(json, "material_sha256s", partial.identity.material_sha256s);
   write_names(json, "approximations", partial.identity.approximations);
   json.member("seed", std::to_string(partial.identity.seed));
+  json.member("sampler", sampler_name(partial.identity.sampler));
   json.member("width", film.width());
   json.member("height", film.height());
   json.member("first_sample", film.target().first);
@@ -135,6 +136,15 @@ std::uint64_t read_seed(const JsonValue& json) {
   return seed;
 }
 
+SamplerKind read_sampler(const JsonValue& json) {
+  const std::string name = json.string();
+  for (const SamplerKind kind : {SamplerKind::kOwenSobol, SamplerKind::kIndependent}) {
+    if (name == sampler_name(kind)) return kind;
+  }
+  json.error("is no sampler");
+  return SamplerKind::kOwenSobol;
+}
+
 struct Header {
   RenderIdentity identity;
   Metadata metadata;
@@ -169,7 +179,8 @@ Header read_header(const std::string& text, const std::string& file) {
                      .scene_sha256 = root.require("scene_sha256").string(),
                      .material_sha256s = read_texts(root.require("material_sha256s")),
                      .approximations = read_texts(root.require("approximations")),
-                     .seed = read_seed(root.require("seed"))};
+                     .seed = read_seed(root.require("seed")),
+                     .sampler = read_sampler(root.require("sampler"))};
   header.width = int(root.require("width").integer(1, 1, kMaxSide));
   header.height = int(root.require("height").integer(1, 1, kMaxSide));
   header.target.first = std::uint64_t(root.require("first_sample").integer(0, 0, kMaxSamples));
@@ -271,7 +282,8 @@ RenderIdentity identity_of(const Scene& scene, std::uint64_t seed) {
           .scene_sha256 = scene.sha256,
           .material_sha256s = scene.material_sha256s,
           .approximations = scene.approximations,
-          .seed = seed};
+          .seed = seed,
+          .sampler = scene.sampler};
 }
 
 void write_partial(const fs::path& file, const PartialRender& partial) {
@@ -347,6 +359,10 @@ void check_same_image(const PartialRender& partial, const fs::path& file, const 
   }
   if (found.seed != wanted.seed) {
     refuse(fmt::format("is of seed {}, not of seed {}", found.seed, wanted.seed));
+  }
+  if (found.sampler != wanted.sampler) {
+    refuse(
+        fmt::format("is of sampler {}, not {}", sampler_name(found.sampler), sampler_name(wanted.sampler)));
   }
   if (found.program != wanted.program) {
     refuse(fmt::format("is by spectrace {}, not {}: their images may differ", found.program, wanted.program));

@@ -21,6 +21,7 @@ struct RenderIdentity {
   std::vector<std::string> material_sha256s;
   std::vector<std::string> approximations;
   std::uint64_t seed = 0;
+  SamplerKind sampler = SamplerKind::kOwenSobol;
 };
 [[nodiscard]] RenderIdentity identity_of(const Scene& scene, std::uint64_t seed);
 
@@ -35,7 +36,8 @@ void write_partial(const std::filesystem::path& file, const PartialRender& parti
 /// Throws InputError naming the field that is wrong. Memory is bounded by the file's size.
 [[nodiscard]] PartialRender read_partial(const std::filesystem::path& file);
 
-/// Throws InputError, naming `file`, where it is of another scene, seed, program or layout than is wanted.
+/// Throws InputError, naming `file`, where it is of another scene, seed, sampler, program or layout than is
+/// wanted.
 void check_same_image(const PartialRender& partial, const std::filesystem::path& file,
                       const RenderIdentity& identity, int width, int height, const FilmLayout& layout);
 

@@ -22,6 +22,7 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
       {"spectrace:cropWindow", fmt::format("{} {} {} {} of {} x {}", window.x, window.y, window.width,
                                            window.height, scene.film.width, scene.film.height)},
       {"spectrace:seed", std::to_string(options.seed)},  // text: 64 unsigned bits fit no other attribute
+      {"spectrace:sampler", std::string(sampler_name(scene.sampler))},
       {"spectrace:spp", std::int64_t(samples.count())},
       {"spectrace:sampleRange", fmt::format("{}:{}", samples.first, samples.last)},
       {"spectrace:seconds", report.seconds},

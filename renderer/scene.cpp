@@ -218,6 +218,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
                .integrator = description.integrator,
                .spp = description.spp,
                .seed = description.seed,
+               .sampler = description.sampler,
                .quality = description.quality,
                .aovs = description.aovs,
                .approximations = description.approximations,

@@ -25,8 +25,9 @@ struct Scene {
   Camera camera;
   FilmDesc film;
   IntegratorDesc integrator;
-  int spp = 64;                             ///< what the file asks for
-  std::uint64_t seed = 0;                   ///< likewise
+  int spp = 64;            ///< what the file asks for
+  std::uint64_t seed = 0;  ///< likewise
+  SamplerKind sampler = SamplerKind::kOwenSobol;
   QualityDesc quality;                      ///< likewise
   AovSet aovs;                              ///< likewise
   std::vector<std::string> approximations;  ///< what was left out of it, and how (renderer/approximations.h)

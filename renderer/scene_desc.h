@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/math/sampler.h"
 #include "core/math/vec.h"
 #include "core/spectra/spectrum.h"
 #include "materials/material.h"
@@ -136,6 +137,7 @@ struct SceneDesc {
   IntegratorDesc integrator;
   int spp = 64;
   std::uint64_t seed = 0;
+  SamplerKind sampler = SamplerKind::kOwenSobol;
   QualityDesc quality{};
   AovSet aovs = kLobeAovs;
   std::vector<MaterialDesc> materials;

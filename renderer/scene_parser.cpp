@@ -70,10 +70,18 @@ void parse_camera(const JsonValue& json, CameraDesc& camera) {
   }
 }
 
+SamplerKind parse_sampler_kind(const JsonValue& json) {
+  constexpr std::string_view kDefault = sampler_name(SamplerKind::kOwenSobol),
+                             kOther = sampler_name(SamplerKind::kIndependent);
+  return json.choice(kDefault, {kDefault, kOther}) == kOther ? SamplerKind::kIndependent
+                                                             : SamplerKind::kOwenSobol;
+}
+
 void parse_sampler(const JsonValue& json, SceneDesc& scene) {
   scene.spp = static_cast<int>(json.get("spp").integer(scene.spp, 1, kMaxSpp));
   scene.seed =
       static_cast<std::uint64_t>(json.get("seed").integer(0, 0, std::numeric_limits<std::int64_t>::max()));
+  scene.sampler = parse_sampler_kind(json.get("type"));
   json.reject_unknown_keys();
 }
 

@@ -122,8 +122,9 @@ std::uint32_t wavelength_bits(std::uint32_t set, std::uint32_t hero) {
 
 }  // namespace
 
-Sampler::Sampler(std::uint64_t pixel, std::uint64_t sample, std::uint64_t seed)
-    : key_(hash(hash(mix(seed + kGolden), pixel), sample >> 32)), sample_(std::uint32_t(sample)) {}
+Sampler::Sampler(std::uint64_t pixel, std::uint64_t sample, std::uint64_t seed, SamplerKind kind)
+    : key_(hash(hash(mix(seed + kGolden), pixel), kind == SamplerKind::kIndependent ? sample : sample >> 32)),
+      sample_(std::uint32_t(sample)) {}
 
 PathNumbers Sampler::path() const {
   const Words x = block_at(kJointColumns[0], sample_, hash(key_, 0));

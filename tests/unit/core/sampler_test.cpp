@@ -21,7 +21,7 @@ namespace {
 using Pair = std::function<Vec2(std::uint64_t)>;
 
 /// All trials of this file together have significance 0.01. Numbers are fixed, so a pass is a pass for ever.
-constexpr std::size_t kTrials = 64;  // at most
+constexpr std::size_t kTrials = 128;  // at most
 
 /// Of `n` pairs over a 16 x 16 grid: catches uneven margins and any correlation coarser than 1/16.
 double chi_square_of(int n, const Pair& pair) {
@@ -198,6 +198,46 @@ double unevenness(int n, const Numbers& numbers) {
     sum += squares / (n * (1 - 1 / double(boxes)));
   }
   return sum / pixels;
+}
+
+Sampler independent(std::uint64_t pixel, std::uint64_t sample) {
+  return {pixel, sample, 3, SamplerKind::kIndependent};
+}
+
+TEST(Sampler, IndependentSamplesKnowNothingOfEachOther) {
+  for (std::size_t d = 0; d < kVertexNumbers; ++d) {
+    for (const std::uint32_t vertex : {0U, 1U, 4U}) {
+      expect_independent("samples of one pixel", [=](std::uint64_t i) -> Vec2 {
+        return {of_vertex(independent(9, i), vertex)[d], of_vertex(independent(9, i + 1), vertex)[d]};
+      });
+    }
+  }
+  for (std::size_t d = 0; d + 1 < kPathNumbers; ++d) {
+    expect_independent("numbers of one sample", [=](std::uint64_t i) -> Vec2 {
+      const auto u = of_path(independent(9, i));
+      return {u[d], u[d + 1]};
+    });
+  }
+  expect_independent("vertices of one sample", [](std::uint64_t i) -> Vec2 {
+    return {independent(9, i).vertex(0).bsdf.x, independent(9, i).vertex(1).bsdf.x};
+  });
+}
+
+TEST(Sampler, IndependentSamplesAreNotStratified) {
+  // 1 within five standard errors of 64 pixels' chi-squares of 63 degrees of freedom; a stratified one has 0.
+  const double deviation = std::sqrt(2.0 / 63 / 64);
+  for (const int n : {64, 256}) {
+    double sum = 0;
+    for (std::uint64_t pixel = 0; pixel < 64; ++pixel) {
+      std::array<double, 64> counts{};
+      for (int i = 0; i < n; ++i) {
+        const Vec2 u = independent(pixel, std::uint64_t(i)).vertex(1).light;
+        counts[std::size_t(u.x * 8) * 8 + std::size_t(u.y * 8)] += 1;
+      }
+      for (const double c : counts) sum += (c - n / 64.0) * (c - n / 64.0) / (n / 64.0);
+    }
+    EXPECT_NEAR(sum / 64 / 63, 1, 5 * deviation) << n << " samples";
+  }
 }
 
 TEST(Sampler, NumbersThatMeetAreEvenTogether) {

@@ -60,6 +60,7 @@ TEST_F(PartialRenders, ComeBackAsTheyWereWritten) {
   const PartialRender partial = part(8, 24, 5);
   const PartialRender read = read_partial(written("a.partial", partial));
   EXPECT_EQ(read.identity.seed, 5U);
+  EXPECT_EQ(read.identity.sampler, SamplerKind::kOwenSobol);
   EXPECT_EQ(read.identity.scene_sha256, "of a test");
   EXPECT_EQ(read.identity.program, partial.identity.program);
   EXPECT_EQ(read.metadata, partial.metadata);
@@ -95,6 +96,11 @@ TEST_F(PartialRenders, AreNotMergedWhereTheyAreNotPartsOfOneImage) {
   const auto other = written("other.partial", part(16, 8));
   EXPECT_NE(refusal({a, other}).find("another scene"), std::string::npos) << refusal({a, other});
   description_.sha256 = "of a test";
+  description_.sampler = SamplerKind::kIndependent;
+  const auto sampler = written("sampler.partial", part(16, 8));
+  EXPECT_NE(refusal({a, sampler}).find("sampler independent, not owen-sobol"), std::string::npos)
+      << refusal({a, sampler});
+  description_.sampler = SamplerKind::kOwenSobol;
   description_.film.spectral->bins.count = 8;
   const auto bins = written("bins.partial", part(16, 8));
   EXPECT_NE(refusal({a, bins}).find("wavelengths"), std::string::npos) << refusal({a, bins});

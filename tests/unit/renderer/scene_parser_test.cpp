@@ -63,6 +63,7 @@ TEST(SceneParser, FillsInTheDefaults) {
   EXPECT_EQ(scene.film.height, 512);
   EXPECT_EQ(scene.spp, 64);
   EXPECT_EQ(scene.seed, 0U);
+  EXPECT_EQ(scene.sampler, SamplerKind::kOwenSobol);
   EXPECT_EQ(scene.integrator.max_depth, 8);
   EXPECT_EQ(scene.integrator.roulette_depth, 4);
   EXPECT_TRUE(scene.integrator.next_event);
@@ -75,7 +76,7 @@ TEST(SceneParser, ReadsEverySection) {
   const SceneDesc scene = parse(scene_with(R"(
 "$schema": "scene.schema.json",  // a comment
 "spectrum": {"range_nm": [360, 1000], "sampling": "uniform"},
-"film": {"width": 64, "height": 48}, "sampler": {"spp": 7, "seed": 9007199254740993},
+"film": {"width": 64, "height": 48}, "sampler": {"spp": 7, "seed": 9007199254740993, "type": "independent"},
 "integrator": {"max_depth": 3, "roulette_depth": 2, "next_event": false},
 "groups": [{"name": "pair", "shapes": [{"type": "sphere", "material": "clay", "radius": 2}]}],
 "shapes": [{"type": "instance", "group": "pair", "transform": {"translate": [1, 2, 3]}},
@@ -87,6 +88,7 @@ TEST(SceneParser, ReadsEverySection) {
            {"type": "environment", "radiance": 0.5, "scale": 2}])"));
   EXPECT_EQ(scene.range, (WavelengthRange{360, 1000}));
   EXPECT_FALSE(scene.visible_sampling);
+  EXPECT_EQ(scene.sampler, SamplerKind::kIndependent);
   EXPECT_EQ(scene.seed, 9007199254740993U);  // more digits than a double has
   EXPECT_FALSE(scene.integrator.next_event);
   ASSERT_EQ(scene.shapes.size(), 3U);
@@ -275,6 +277,7 @@ TEST(SceneParser, KeepsSizesAndCountsInRange) {
   expect_problem(R"("sampler": {"spp": 0})", "/sampler/spp: expected an integer in [1, 2147483647], got 0");
   expect_problem(R"("sampler": {"spp": 2147483648})", "/sampler/spp");
   expect_problem(R"("sampler": {"seed": -1})", "/sampler/seed");
+  expect_problem(R"("sampler": {"type": "independant"})", "/sampler/type");
   expect_problem(R"("integrator": {"max_depth": 1.5})",
                  "/integrator/max_depth: expected an integer in [0, 65536], got 1.5");
   expect_problem(R"("spectrum": {"range_nm": [700, 400]})", "/spectrum/range_nm: expected [min, max]");

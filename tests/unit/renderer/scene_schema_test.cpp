@@ -82,7 +82,7 @@ Json everything() {
     "camera": {"type": "thin_lens", "origin": [0, -5, 2], "target": [0, 0, 1], "up": [0, 0, 1], "fov_deg": 30,
                "lens_radius": 0.1, "focus_distance": 4},
     "film": {"width": 64, "height": 48},
-    "sampler": {"spp": 8, "seed": 3},
+    "sampler": {"spp": 8, "seed": 3, "type": "independent"},
     "integrator": {"max_depth": 5, "roulette_depth": 3, "next_event": true},
     "materials": [
       {"name": "clay", "type": "lambert", "reflectance": 0.5},
