@@ -19,6 +19,13 @@ constexpr std::chrono::milliseconds kRefresh{100};       // faster than the eye 
 constexpr std::chrono::milliseconds kLogRefresh{10000};  // a log of an hour's work stays short enough to read
 constexpr std::chrono::milliseconds kJsonRefresh{1000};  // a program that shows a bar wants no more
 
+/// NaN where nothing tells.
+double seconds_left(double done_since, double to_do, double elapsed_s) {
+  if (to_do <= 0) return 0;
+  const bool is_known = done_since > 0 && std::isfinite(to_do);
+  return is_known ? elapsed_s / done_since * to_do : std::numeric_limits<double>::quiet_NaN();
+}
+
 std::string json_progress(std::string_view stage, double done, double total, double elapsed_s,
                           double remaining_s) {
   JsonWriter json;
@@ -73,14 +80,14 @@ void ConsoleProgress::update(std::string_view stage, double done, double total) 
   if (stage != stage_) {
     stage_ = stage;
     stage_start_ = now;
+    first_done_ = done;
     if (form_ == Form::kLines) last_shown_ = now;  // work shorter than the interval leaves no line
   }
   if (!is_due(now, done >= total)) return;
   last_shown_ = now;
   const double share = done / total;
   const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
-  const double left_s =
-      share > 0 ? elapsed_s / share * (1 - share) : std::numeric_limits<double>::quiet_NaN();
+  const double left_s = seconds_left(done - first_done_, total - done, elapsed_s);
   if (form_ == Form::kJson) {
     fmt::print(stderr, "{}", json_progress(stage_, done, total, elapsed_s, left_s));
   } else {

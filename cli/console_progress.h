@@ -41,6 +41,7 @@ class ConsoleProgress final : public Progress {
   bool line_shown_ = false;
   std::string stage_;
   Clock::time_point stage_start_, last_shown_;
+  double first_done_ = 0;  // at the start: a resumed render begins in its middle
 };
 
 /// `--progress auto|plain|json`.

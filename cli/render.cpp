@@ -95,15 +95,20 @@ RenderOptions render_options(const Arguments& arguments, const Scene& scene) {
   return options;
 }
 
+struct Start {
+  Film film;
+  std::optional<Metadata> header;  ///< of the checkpoint that the film is of
+};
+
 /// The film of a checkpoint, or an empty one where there is none yet.
-Film film_to_start_with(const Scene& scene, const RenderOptions& options, const Arguments& arguments,
-                        Progress& progress) {
+Start film_to_start_with(const Scene& scene, const RenderOptions& options, const Arguments& arguments,
+                         Progress& progress) {
   Film film = new_film(scene, options);
   const fs::path file = partial_file(arguments.output);
-  if (!arguments.resume) return film;
+  if (!arguments.resume) return {std::move(film), {}};
   if (!fs::exists(file)) {
     progress.note(fmt::format("{}: there is none yet, starting from nothing", file.string()));
-    return film;
+    return {std::move(film), {}};
   }
   PartialRender partial = read_partial(file);
   check_same_image(partial, file, identity_of(scene, options.seed), film.width(), film.height(),
@@ -116,15 +121,16 @@ Film film_to_start_with(const Scene& scene, const RenderOptions& options, const 
   }
   progress.note(fmt::format("{}: going on after {} samples a pixel", file.string(),
                             partial.film.ends().first * kLeafSamples - options.first));
-  return std::move(partial.film);
+  return {std::move(partial.film), std::move(partial.metadata)};
 }
 
+/// `before`: of what the session went on with.
 Metadata header_of(const Scene& scene, const RenderOptions& options, const RenderSession& session,
-                   const Arguments& arguments) {
+                   const Arguments& arguments, const std::optional<Metadata>& before) {
   Metadata metadata = provenance(scene, options, session.report());
   if (!arguments.separation.model.empty()) metadata["spectrace:separation"] = arguments.separation.model;
   metadata["spectrace:paired"] = std::int64_t(arguments.separation.paired);
-  return metadata;
+  return before ? joined_provenance(std::move(metadata), *before) : metadata;
 }
 
 void print_summary(const fs::path& file, const Scene& scene, const Film& film, const RenderReport& report) {
@@ -168,12 +174,13 @@ ExitCode render_command(Arguments arguments) {
     print_effects(description, scene, options.aovs, options.forced);
     return ExitCode::kSuccess;
   }
-  RenderSession session(scene, options, film_to_start_with(scene, options, arguments, progress));
+  Start start = film_to_start_with(scene, options, arguments, progress);
+  RenderSession session(scene, options, std::move(start.film));
 
+  const auto header = [&] { return header_of(scene, options, session, arguments, start.header); };
   const auto save = [&] {
-    write_partial(
-        partial_file(arguments.output),
-        {identity_of(scene, options.seed), header_of(scene, options, session, arguments), session.film()});
+    write_partial(partial_file(arguments.output),
+                  {identity_of(scene, options.seed), header(), session.film()});
   };
   std::vector<Recurring> tasks;
   if (arguments.checkpoint_seconds > 0) tasks.push_back({arguments.checkpoint_seconds, save});
@@ -189,7 +196,7 @@ ExitCode render_command(Arguments arguments) {
 
   const bool keeps_partial = arguments.checkpoint_seconds > 0 || arguments.resume || arguments.samples;
   if (keeps_partial) save();
-  write_images(arguments.output, session.film(), header_of(scene, options, session, arguments));
+  write_images(arguments.output, session.film(), header());
   progress.finish();
   const RenderReport report = session.report();
   print_summary(arguments.output.file, scene, session.film(), report);

@@ -13,6 +13,7 @@ class ErrorTrend {
   /// Samples a pixel, more than before, > 0; error >= 0.
   void add(double samples, double error) { seen_.push_back({samples, error}); }
 
+  [[nodiscard]] bool is_known() const { return !seen_.empty(); }
   /// In [1/2, 3/2]: independent samples have 1/2, Owen-scrambled Sobol' points up to 3/2 where what they
   /// integrate is smooth (Owen 1997). 1/2 where there is too little to tell it from: that asks for too many
   /// samples, not too few.

@@ -4,9 +4,11 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "renderer/partial_render.h"
+#include "renderer/provenance.h"
 
 namespace spectrace {
 
@@ -61,6 +63,7 @@ class MergedRuns {
   static bool joins(Run& run, const Run& next) {
     if (run.range().last != next.range().first) return false;
     run.partial.film.append(next.partial.film);
+    run.partial.metadata = joined_provenance(std::move(run.partial.metadata), next.partial.metadata);
     run.last_file = next.last_file;
     return true;
   }

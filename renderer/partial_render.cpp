@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "core/base/error.h"
@@ -194,6 +195,9 @@ Header read_header(const std::string& text, const std::string& file) {
     const JsonValue value = image.get(key);
     if (value.is_string()) {
       header.metadata[key] = value.string();
+    } else if (value.is_integer()) {
+      constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+      header.metadata[key] = value.integer(0, -kMost, kMost);
     } else {
       header.metadata[key] = value.number(0);
     }

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/memory.h"
@@ -16,6 +18,8 @@
 namespace spectrace {
 
 namespace {
+
+constexpr const char* kStage = "rendering";  // what progress is told of
 
 const Kernel& kernel_for(const Features& needed, const std::string& name) {
   if (name.empty()) {
@@ -105,6 +109,22 @@ LeafRange RenderSession::next_pass(std::uint64_t begin) {
   return largest_block(begin, most);
 }
 
+/// How many the film will hold in the end: fewer than its target where a time or an error ends the render
+/// before; infinity while nothing tells when.
+double RenderSession::expected_leaves() const {
+  const LeafRange target = film_.target().leaves();
+  const auto has = double(pass_.first - target.first);
+  std::optional<double> expected;
+  const auto end_at = [&](double leaves) { expected = std::min(leaves, expected.value_or(leaves)); };
+  if (options_.seconds > 0 && leaves_rendered_ > 0) {
+    end_at(has + (options_.seconds - seconds_) / (seconds_ / leaves_rendered_));
+  }
+  if (options_.relative_error > 0 && trend_.is_known()) end_at(trend_.samples_for(options_.relative_error));
+  const bool ends_before = options_.seconds > 0 || options_.relative_error > 0;
+  if (ends_before && !expected) return std::numeric_limits<double>::infinity();
+  return std::clamp(expected.value_or(double(target.count)), has + double(pass_.count), double(target.count));
+}
+
 bool RenderSession::is_good_enough(std::uint64_t leaves) {
   if (options_.relative_error <= 0) return false;
   const double error = film_.relative_error();
@@ -121,6 +141,9 @@ bool RenderSession::advance(Clock::time_point until, const std::atomic<bool>& st
           pass_.first < target.end() && !(has_some && is_good_enough(pass_.first - target.first));
       if (goes_on) pass_ = next_pass(pass_.first);
       is_done_ = pass_.count == 0;
+      // Sooner than was thought: the end is told all the same.
+      const auto has = double(pass_.first - target.first);
+      if (is_done_ && pass_.first < target.end()) progress.update(kStage, has, has);
     } else if (render_pass(until, stop, progress)) {
       pass_ = {pass_.end(), 0};
     } else {
@@ -148,6 +171,7 @@ bool RenderSession::render_pass(Clock::time_point until, const std::atomic<bool>
                tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
   tbb::task_arena arena(threads_);
   const auto tiles = double(film_.tiles().size());
+  const double expected = expected_leaves();
   std::atomic<std::size_t> done{film_.tiles().size() - left.size()}, rendered{0};
   const auto render_one = [&](std::size_t tile) {
     thread_local TileSums sums;
@@ -158,7 +182,7 @@ bool RenderSession::render_pass(Clock::time_point until, const std::atomic<bool>
     extrapolated_ += counts.extrapolated;
     ++rendered;
     const double leaves = double(pass_.first - target.first) + double(pass_.count) * double(++done) / tiles;
-    progress.update("rendering", leaves, double(target.count));
+    progress.update(kStage, leaves, expected);
   };
   arena.execute([&] {
     tbb::parallel_for(
@@ -191,6 +215,7 @@ RenderReport RenderSession::report() const {
               std::min(leaves_rendered_ * double(kLeafSamples), double(target.count())) * pixels)),
           .rays = rays_,
           .invalid_samples = film_.invalid_samples(),
+          .measured_vertices = measured_,
           .extrapolated_share = measured_ > 0 ? double(extrapolated_) / double(measured_) : 0,
           .seconds = seconds_,
           .threads = threads_};

@@ -38,10 +38,11 @@ struct RenderReport {
   EffectList effects;
   SampleRange samples;  ///< that every pixel has
   std::uint64_t paths = 0;
-  std::uint64_t rays = 0;             ///< shadow rays included, but for those through masks
-  std::uint64_t invalid_samples = 0;  ///< non-finite or negative radiance: dropped
-  double extrapolated_share = 0;  ///< of path vertices on measured BRDFs: seen from beyond what was measured
-  double seconds = 0;             ///< of rendering, in this process
+  std::uint64_t rays = 0;               ///< shadow rays included, but for those through masks
+  std::uint64_t invalid_samples = 0;    ///< non-finite or negative radiance: dropped
+  std::uint64_t measured_vertices = 0;  ///< of paths, on measured BRDFs
+  double extrapolated_share = 0;        ///< of those: seen from beyond what was measured
+  double seconds = 0;                   ///< of rendering, in this process
   int threads = 0;
 };
 
@@ -84,6 +85,7 @@ class RenderSession {
  private:
   [[nodiscard]] LeafRange next_pass(std::uint64_t begin);
   [[nodiscard]] bool is_good_enough(std::uint64_t leaves);
+  [[nodiscard]] double expected_leaves() const;
   bool render_pass(Clock::time_point until, const std::atomic<bool>& stop, Progress& progress);
 
   const Scene& scene_;

@@ -80,6 +80,7 @@ bool JsonValue::is_string() const { return exists() && node_of(node_).kind == Js
 bool JsonValue::is_number() const {
   return exists() && (node_of(node_).kind == JsonKind::kInteger || node_of(node_).kind == JsonKind::kReal);
 }
+bool JsonValue::is_integer() const { return exists() && node_of(node_).kind == JsonKind::kInteger; }
 
 JsonValue JsonValue::get(std::string_view key) const {
   if (!exists()) return {state_, nullptr};

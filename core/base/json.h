@@ -46,6 +46,7 @@ class JsonValue {
   [[nodiscard]] bool is_array() const;
   [[nodiscard]] bool is_string() const;
   [[nodiscard]] bool is_number() const;
+  [[nodiscard]] bool is_integer() const;  ///< a number without point or exponent, of 64 bits
 
   /// The member `key` of an object. Asking makes the key known, see reject_unknown_keys(). Absent: a value
   /// that does not exist. Not an object: recorded.

@@ -9,7 +9,7 @@ namespace spectrace {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// `done` of `total` units of `stage` are finished; `total` > 0.
+  /// `done` of `total` units of `stage` are finished; `total` > 0, infinite where nobody knows.
   virtual void update(std::string_view stage, double done, double total) = 0;
   /// A fact worth one line: an effect skipped, a table extrapolated. `text` has no newline.
   virtual void note(std::string_view text) = 0;

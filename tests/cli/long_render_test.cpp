@@ -84,6 +84,46 @@ TEST_F(LongRender, ShardsMergeInAnyOrderWhateverTheirThreads) {
   EXPECT_EQ(std::get<std::string>(read_metadata(folder_ / "merged.exr").at("spectrace:sampleRange")), "0:96");
 }
 
+TEST_F(LongRender, HeadersOfJoinedAndResumedImagesAreThoseOfTheWhole) {
+  write_measured("m.bsdf");
+  write_scene("scene.json", R"({"name": "m", "type": "measured", "file": "m.bsdf"})");
+  const auto header = [&](const char* file) { return read_metadata(folder_ / file); };
+  const auto number = [](const Metadata& of, const char* name) { return std::get<double>(of.at(name)); };
+  const std::vector<std::string> paired{"--separate", "fresnel", "--grid",  "24x20x30",
+                                        "--cache",    "kept",    "--paired"};
+  const auto part = [&](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.end(), paired.begin(), paired.end());
+    ASSERT_EQ(render(name, options).exit_code, 0);
+  };
+  part("whole.exr", {"--spp", "32"});
+  part("a.exr", {"--samples", "0:8", "--threads", "1"});
+  part("b.exr", {"--samples", "8:32", "--threads", "2"});
+  const double seconds =
+      number(header("a.exr"), "spectrace:seconds") + number(header("b.exr"), "spectrace:seconds");
+  ASSERT_EQ(run({"merge", "b.partial", "a.partial", "-o", "merged.exr"}).exit_code, 0);
+  part("resumed.exr", {"--spp", "8", "--checkpoint", "60"});
+  const double before = number(header("resumed.exr"), "spectrace:seconds");
+  part("resumed.exr", {"--spp", "32", "--resume"});
+  const Metadata whole = header("whole.exr");
+  for (const char* file : {"merged.exr", "resumed.exr"}) {
+    const Metadata joined = header(file);
+    for (const auto& [name, value] : whole) {
+      if (name == "spectrace:seconds" || name == "spectrace:threads" || name == "spectrace:extrapolatedShare")
+        continue;
+      ASSERT_TRUE(joined.contains(name)) << file << ": " << name;
+      EXPECT_EQ(joined.at(name), value) << file << ": " << name;
+    }
+    // Of counts that are the same; shares were rounded before they were joined.
+    EXPECT_NEAR(number(joined, "spectrace:extrapolatedShare"), number(whole, "spectrace:extrapolatedShare"),
+                1e-12);
+    EXPECT_EQ(joined.at("spectrace:threads").index(), whole.at("spectrace:threads").index());
+  }
+  EXPECT_GT(number(whole, "spectrace:extrapolatedShare"), 0);
+  EXPECT_EQ(std::get<std::int64_t>(header("merged.exr").at("spectrace:threads")), 2);
+  EXPECT_DOUBLE_EQ(number(header("merged.exr"), "spectrace:seconds"), seconds);
+  EXPECT_GT(number(header("resumed.exr"), "spectrace:seconds"), before);
+}
+
 TEST_F(LongRender, MergeRefusesWhatIsNotOneImage) {
   ASSERT_EQ(render("a.exr", {"--samples", "0:16"}).exit_code, 0);
   ASSERT_EQ(render("b.exr", {"--samples", "8:24"}).exit_code, 0);

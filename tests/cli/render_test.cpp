@@ -154,17 +154,30 @@ TEST_F(Render, NamesItsOutputAfterTheSceneUnlessTold) {
   EXPECT_EQ(names(), (std::vector<std::string>{"ball.exr", "ball.json", "ball.png"}));
 }
 
-TEST_F(Render, HeaderSaysWhereTheImageCameFrom) {
+TEST_F(Render, HeadersSayWhereTheImagesCameFrom) {
   write_lambert_scene("ball.json");
-  EXPECT_EQ(run({"ball.json", "-o", "a.exr", "--spp", "3", "--seed", "5"}).exit_code, 0);
-  const Metadata metadata = read_metadata(folder_ / "a.exr");
-  for (const char* name :
-       {"version", "commit", "sceneFile", "sceneSha256", "materialSha256s", "seconds", "threads", "isa",
-        "lambdaMinNm", "lambdaMaxNm", "units", "kernel", "effectsUsed", "effectsSkipped", "invalidSamples"}) {
-    EXPECT_TRUE(metadata.contains(std::string("spectrace:") + name)) << name;
+  std::string text = read_text(folder_ / "ball.json");
+  text.replace(text.find("\"height\": 16"), 12, R"("height": 16, "spectral": {"bins": 3})");
+  write_text(folder_ / "ball.json", text);
+  ASSERT_EQ(run({"ball.json", "-o", "a.exr", "--spp", "3", "--seed", "5"}).exit_code, 0);
+  for (const char* file : {"a.exr", "a.spectral.exr", "a.diffuse.spectral.exr", "a.specular.spectral.exr"}) {
+    const Metadata metadata = read_metadata(folder_ / file);
+    for (const char* name : {"version",         "commit",         "sceneFile",        "sceneSha256",
+                             "materialSha256s", "seconds",        "threads",          "isa",
+                             "lambdaMinNm",     "lambdaMaxNm",    "observer",         "units",
+                             "binMeasure",      "kernel",         "effectsUsed",      "effectsSkipped",
+                             "approximations",  "invalidSamples", "measuredVertices", "extrapolatedShare"}) {
+      EXPECT_TRUE(metadata.contains(std::string("spectrace:") + name)) << file << ": " << name;
+    }
+    EXPECT_EQ(std::get<std::int64_t>(metadata.at("spectrace:spp")), 3) << file;
+    EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:seed")), "5") << file;
+    EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:sampleRange")), "0:3") << file;
+    EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:observer")), "CIE 1931 2 degree") << file;
+    const bool has_bins = std::string(file) != "a.exr";
+    EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:binMeasure")),
+              has_bins ? "mean W.m^-2.sr^-1.nm^-1 over the bin" : "no bins");
+    EXPECT_EQ(metadata.contains("spectralLayoutVersion"), has_bins);
   }
-  EXPECT_EQ(std::get<std::int64_t>(metadata.at("spectrace:spp")), 3);
-  EXPECT_EQ(std::get<std::string>(metadata.at("spectrace:seed")), "5");
 }
 
 TEST_F(Render, ListsEffectsWithoutRendering) {

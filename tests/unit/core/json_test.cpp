@@ -29,6 +29,14 @@ std::vector<std::string> lines_of(const JsonDocument& document) {
 }
 using Lines = std::vector<std::string>;
 
+TEST(Json, TellsIntegersFromOtherNumbers) {
+  JsonDocument document = JsonDocument::parse(R"([1, -7, 1.0, 1e3, "1", true])", "f");
+  std::vector<bool> found;
+  for (const JsonValue& value : document.root().elements()) found.push_back(value.is_integer());
+  EXPECT_EQ(found, (std::vector<bool>{true, true, false, false, false, false}));
+  EXPECT_FALSE(JsonValue().is_integer());
+}
+
 TEST(Json, ReadsEveryType) {
   JsonDocument document =
       parse(R"({"n": -1.5e2, "i": 8e3, "b": true, "s": "a\u00e9\n", "a": [1, 2.5], "v": [1, 2, 3],

@@ -29,7 +29,11 @@ class PartialRenders : public testing::Test {
     scene_.emplace(build_scene(description_, progress_));
     RenderSession session(*scene_, {.spp = spp, .seed = seed, .aovs = kAllAovs, .first = first});
     session.finish(progress_);
-    return {identity_of(*scene_, seed), {{"spectrace:kernel", session.report().kernel}}, session.film()};
+    // Each type that a header has; 360.0 must not come back as an integer.
+    Metadata header{{"spectrace:kernel", session.report().kernel},
+                    {"spectrace:threads", std::int64_t(2)},
+                    {"spectrace:lambdaMinNm", 360.0}};
+    return {identity_of(*scene_, seed), std::move(header), session.film()};
   }
   std::filesystem::path written(const std::string& name, const PartialRender& partial) {
     write_partial(folder_ / name, partial);
