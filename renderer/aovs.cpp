@@ -27,6 +27,7 @@ constexpr std::array kNames{
     AovName{"lobes", kLobeAovs},
     AovName{"denoise", kDenoiseAovs},
     AovName{"all", kAllAovs},
+    AovName{"xyz", with(&AovSet::xyz)},
     AovName{"diffuse", kLobesOnly},
     AovName{"specular", kLobesOnly},
     AovName{"emission", kLobesOnly},

@@ -17,6 +17,7 @@ namespace spectrace {
 
 /// What is gathered; only what is asked for is paid for.
 struct AovSet {
+  bool xyz = false;             ///< X, Y, Z of the beauty
   bool lobes = false;           ///< diffuse, specular, emission, background
   bool specular_parts = false;  ///< specular_fresnel, _diffraction, _residual, where a material has them
   bool direct = false;          ///< diffuse and specular, each direct and indirect
@@ -51,7 +52,7 @@ inline constexpr std::array kAovFlags{
     &AovSet::lobes,         &AovSet::specular_parts,   &AovSet::direct,  &AovSet::halves,
     &AovSet::variance,      &AovSet::albedo,           &AovSet::normal,  &AovSet::position,
     &AovSet::depth,         &AovSet::feature_variance, &AovSet::samples, &AovSet::extrapolated,
-    &AovSet::crypto_object, &AovSet::crypto_material};
+    &AovSet::crypto_object, &AovSet::crypto_material,  &AovSet::xyz};
 [[nodiscard]] AovSet operator|(AovSet a, const AovSet& b);
 
 inline constexpr AovSet kNoAovs{};
@@ -66,7 +67,7 @@ inline constexpr AovSet kAllAovs = [] {
 /// All that denoisers want.
 inline constexpr AovSet kDenoiseAovs = [] {
   AovSet set = kAllAovs;
-  set.specular_parts = set.extrapolated = set.crypto_object = set.crypto_material = false;
+  set.xyz = set.specular_parts = set.extrapolated = set.crypto_object = set.crypto_material = false;
   return set;
 }();
 

@@ -72,6 +72,7 @@ class ChannelWalk {
 
   void walk() {
     layout_.layers.for_each([&](Layer layer) { add_layer(layer); });
+    if (layout_.aovs.xyz) add_xyz();
     if (layout_.aovs.direct) add_indirect();
     const std::size_t moments = layout_.aovs.lobes ? kMomentLayers : 1;
     for (std::size_t m = 0; m < moments; ++m) add_moments(m);
@@ -103,6 +104,12 @@ class ChannelWalk {
 
   void add_layer(Layer layer) {
     add_rgb(layer_name(layer), "", [&] { return rgb_of(*total_, layer); });
+  }
+  void add_xyz() {
+    for (std::size_t c = 0; c < 3; ++c) {
+      add({"xyz", "", kXyzNames[c]},
+          [&] { return over(total_->v[slots::xyz(Layer::kBeauty) + c], total_->valid); });
+    }
   }
   /// What is not direct.
   void add_indirect() {

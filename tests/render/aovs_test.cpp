@@ -117,6 +117,28 @@ SceneDesc lit_floor() {
   return scene;
 }
 
+TEST(Aovs, XyzIsTheBeautyBeforeItIsRgb) {
+  const RenderResult result = render_scene(lit_floor(), {.spp = 8, .aovs = {.xyz = true}});
+  EXPECT_EQ(result.image.channels,
+            (std::vector<std::string>{"R", "G", "B", "xyz.X", "xyz.Y", "xyz.Z", "diagnostics.invalid"}));
+  EXPECT_EQ(result.report.kernel, "box, beauty only") << "it is there anyhow";
+  for_each_pixel(result.image, [&](const Pixel& at) {
+    const Rgb rgb = xyz_to_rgb({at("xyz.X"), at("xyz.Y"), at("xyz.Z")});
+    EXPECT_GT(at("xyz.Y"), 0);
+    const char* names[] = {"R", "G", "B"};
+    // 1e-5: float channels, through a matrix that takes differences.
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], at(names[c]), 1e-5 * at("xyz.Y"));
+  });
+  // Under a sky of 1 at every wavelength, Y is 1.
+  SceneDesc white = empty_scene();
+  white.lights = {sky(1)};
+  white.integrator.max_depth = 2;
+  const Image sky_alone = render_scene(white, {.spp = 1024, .aovs = {.xyz = true}}).image;
+  double mean = 0;
+  for_each_pixel(sky_alone, [&](const Pixel& at) { mean += at("xyz.Y"); });
+  EXPECT_NEAR(mean / (sky_alone.width * sky_alone.height), 1, 1e-3);
+}
+
 TEST(Aovs, VarianceIsThatOfTheMeanOfItsSamples) {
   // Renders of 1, 2, ... samples tell each sample: Σ(x - x̄)² / (n (n - 1)) of the same numbers.
   SceneDesc description = lit_floor();
