@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What AOVs cost: whole runs with "denoise" and with "none" in turns, and with --instructions those of each name over none's.
+
+--without-aovs builds the program a second time from a copy of the source in which not even the lines remain that a kernel
+without AOVs still has (the count of extrapolated vertices, the pointer to the albedo tables), and tells what those cost.
+Instructions are those of render_tile() and all below it (callgrind), of small copies of the scenes.
+"""
+
+import argparse
+import os
+import re
+import resource
+import shutil
+import statistics
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from unused_effects import ROOT, instructions, small_copy
+
+SPP = 64  # of the runs in turns
+NAMES = ("lobes", "direct", "halves", "variance", "albedo", "normal", "depth", "position", "samples", "extrapolated", "crypto_object",
+         "denoise", "all")
+OF_NAME = {"direct": "diffuse_direct"}
+# Of renderer/path_tracer.h: what is there, and what a program that knew no AOVs would have.
+LINES = (
+    (r"    if \(const Float last = scene_\.last_measured_cosine\[.*?\n    \}\n", ""),
+    (r" *albedos_\(job\.albedos\),\n", ""),
+    (r"  const AlbedoTables\* albedos_;\n", "  static constexpr const AlbedoTables* albedos_ = nullptr;\n"),
+)
+
+
+def timed(program: Path, scene: Path, folder: Path, aovs: str, threads: int) -> tuple[float, float]:
+    """Wall and CPU seconds of a whole run."""
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    subprocess.run([program, scene, "--spp", str(SPP), "--threads", str(threads), "--aovs", aovs, "-o", folder / "out.exr"],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def in_turns(program: Path, scene: Path, folder: Path, pairs: int, threads: int) -> None:
+    ratios = []
+    for pair in range(pairs):
+        order = ("none", "denoise") if pair % 2 == 0 else ("denoise", "none")
+        took = {aovs: timed(program, scene, folder, aovs, threads) for aovs in order}
+        ratios.append([d / n for d, n in zip(took["denoise"], took["none"])])
+    for kind, values in zip(("wall", "CPU"), zip(*ratios)):
+        print(f"{scene.stem:<24}denoise over none, {kind:<6}{statistics.median(values):>8.3f}   "
+              f"(pairs: {', '.join(f'{x:.3f}' for x in sorted(values))})", flush=True)
+
+
+def build_without_aovs(folder: Path) -> Path:
+    source = folder / "source"
+    shutil.copytree(ROOT, source, dirs_exist_ok=True, ignore=shutil.ignore_patterns("build", ".git", "demo-out"))
+    file = source / "renderer/path_tracer.h"
+    text = file.read_text()
+    for pattern, replacement in LINES:
+        text, count = re.subn(pattern, replacement, text, flags=re.DOTALL)
+        if count != 1:
+            raise SystemExit(f"{file}: {pattern!r} is there {count} times: adapt this script to the source")
+    file.write_text(text)
+    for command in (["cmake", "-S", source, "-B", folder / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                     "-DSPECTRACE_BUILD_TESTS=OFF"], ["cmake", "--build", folder / "build", "--target", "spectrace"]):
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return folder / "build/cli/spectrace"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("spectrace", type=Path, help="the program")
+    parser.add_argument("--scenes", nargs="+", default=["cornell_box", "material_ball"])
+    parser.add_argument("--pairs", type=int, default=7, help="of runs in turns (default %(default)s)")
+    parser.add_argument("--size", type=int, default=256, help="pixels a side of the runs in turns (default %(default)s)")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--instructions", action="store_true", help="of each name, over none's")
+    parser.add_argument("--without-aovs", type=Path, metavar="FOLDER", help="for the second build")
+    arguments = parser.parse_args()
+    program = arguments.spectrace.resolve()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        scenes = [ROOT / "scenes" / f"{name}.json" for name in arguments.scenes]
+        for scene in scenes if arguments.pairs > 0 else ():
+            in_turns(program, small_copy(scene, arguments.size, folder), folder, arguments.pairs, arguments.threads)
+        if not arguments.instructions and not arguments.without_aovs:
+            return
+        small = [small_copy(scene, 24, folder) for scene in scenes]
+        none = {scene: instructions(program, scene, folder, "--aovs", "none") for scene in small}
+        for scene in small if arguments.instructions else ():
+            for name in NAMES:
+                count = instructions(program, scene, folder, "--aovs", OF_NAME.get(name, name))
+                print(f"{scene.stem:<24}{name:<18}{100 * (count / none[scene] - 1):>8.2f} % more instructions", flush=True)
+        if arguments.without_aovs:
+            bare = build_without_aovs(arguments.without_aovs.resolve())
+            for scene in small:
+                count = instructions(bare, scene, folder, "--aovs", "none")
+                print(f"{scene.stem:<24}none, over a program without AOVs: {100 * (none[scene] / count - 1):.3f} % more instructions",
+                      flush=True)
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("SPECTRACE_DATA", str(ROOT.parent / "shared/data"))
+    main()
