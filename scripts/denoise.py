@@ -44,13 +44,17 @@ MIX_SIGMA = 8  # pixels: over which the halves' verdict is averaged; one pixel's
 WHITE_PERCENTILE = 98  # of the reference, or of the joint picture: white in the PNGs
 
 
-def inside_venv(folder, arguments):
-    """Runs this very script again with the environment's Python, which has the packages."""
+def install(folder):
     python = folder / "bin" / "python"
     if not python.exists():
         venv.create(folder, with_pip=True)
         subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES], check=True)
-    return subprocess.run([python, __file__, *arguments, "--inside"], check=False).returncode
+    return python
+
+
+def inside_venv(folder, arguments):
+    """Runs this very script again with the environment's Python, which has the packages."""
+    return subprocess.run([install(folder), __file__, *arguments, "--inside"], check=False).returncode
 
 
 def read_layers(file):
@@ -309,14 +313,19 @@ def main(arguments):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("noisy", type=Path)
+    parser.add_argument("noisy", type=Path, nargs="?")
     parser.add_argument("-o", "--output", type=Path)
     parser.add_argument("--reference", type=Path)
     parser.add_argument("--fixed", action="store_true", help="do not choose by halves")
     parser.add_argument("--venv", type=Path, default=Path(__file__).parent.parent / "build" / "denoise")
+    parser.add_argument("--install", action="store_true", help="make the environment, and end")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     given = parser.parse_args()
-    if given.inside:
+    if given.install:
+        install(given.venv.resolve())
+    elif given.noisy is None:
+        parser.error("name a picture")
+    elif given.inside:
         main(given)
     else:
         sys.exit(inside_venv(given.venv.resolve(), sys.argv[1:]))

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Holds `spectrace compare` to scikit-image (PSNR, SSIM) and numpy (the others).
 
-Usage: metrics_against_scikit.py SPECTRACE [VENV]. Makes the virtual environment VENV (default build/scikit) with
-scikit-image and OpenEXR from PyPI where it is absent, compares images of several kinds, sizes and settings, prints the
-largest relative deviation of each metric, and exits 1 if any is above 1e-6.
+Usage: metrics_against_scikit.py SPECTRACE [VENV] [--if-installed]. Makes the virtual environment VENV (default build/scikit)
+with scikit-image and OpenEXR from PyPI where it is absent, compares images of several kinds, sizes and settings, prints the
+largest relative deviation of each metric, and exits 1 if any is above 1e-6. With --if-installed it exits with 77 (skipped)
+where VENV is absent; metrics_against_scikit.py --install VENV makes it, and ends.
 """
 import json
 import subprocess
@@ -14,16 +15,21 @@ import venv
 from pathlib import Path
 
 TOLERANCE = 1e-6
+SKIPPED = 77
 PACKAGES = ["numpy", "scikit-image", "OpenEXR"]
 
 
-def inside_venv(folder):
-    """Runs this very script again with the environment's Python, which has the packages."""
+def install(folder):
     python = folder / "bin" / "python"
     if not python.exists():
         venv.create(folder, with_pip=True)
         subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES], check=True)
-    return subprocess.run([python, __file__, sys.argv[1], "--inside"], check=False).returncode
+    return python
+
+
+def inside_venv(folder, spectrace):
+    """Runs this very script again with the environment's Python, which has the packages."""
+    return subprocess.run([install(folder), __file__, spectrace, "--inside"], check=False).returncode
 
 
 def image_pairs():
@@ -103,9 +109,17 @@ def main(spectrace):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
+    options = {word for word in sys.argv[1:] if word.startswith("--")}
+    words = [word for word in sys.argv[1:] if word not in options]
+    if not words or options - {"--inside", "--install", "--if-installed"}:
         sys.exit(__doc__)
-    if sys.argv[2:] == ["--inside"]:
-        main(sys.argv[1])
+    if "--inside" in options:
+        main(words[0])
+    environment = Path("build/scikit" if len(words) == 1 and "--install" not in options else words[-1]).resolve()
+    if "--install" in options:
+        install(environment)
+    elif "--if-installed" in options and not (environment / "bin" / "python").exists():
+        print(f"skipped: no {environment} (--install)")
+        sys.exit(SKIPPED)
     else:
-        sys.exit(inside_venv(Path(sys.argv[2] if len(sys.argv) > 2 else "build/scikit").resolve()))
+        sys.exit(inside_venv(environment, words[0]))

@@ -52,6 +52,15 @@ def in_turns(program: Path, scene: Path, folder: Path, pairs: int, threads: int)
               f"(pairs: {', '.join(f'{x:.3f}' for x in sorted(values))})", flush=True)
 
 
+def make_measurement(program: Path) -> None:
+    """What material_ball shows."""
+    measurement = ROOT / "demo-out/pearlescent.bsdf"
+    if not measurement.exists():
+        measurement.parent.mkdir(exist_ok=True)
+        subprocess.run([program, "acquire", ROOT / "scenes/materials/pearlescent.json", "-o", measurement], check=True,
+                       stdout=subprocess.DEVNULL)
+
+
 def build_without_aovs(folder: Path) -> Path:
     source = folder / "source"
     shutil.copytree(ROOT, source, dirs_exist_ok=True, ignore=shutil.ignore_patterns("build", ".git", "demo-out"))
@@ -62,10 +71,10 @@ def build_without_aovs(folder: Path) -> Path:
         if count != 1:
             raise SystemExit(f"{file}: {pattern!r} is there {count} times: adapt this script to the source")
     file.write_text(text)
-    for command in (["cmake", "-S", source, "-B", folder / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                     "-DSPECTRACE_BUILD_TESTS=OFF"], ["cmake", "--build", folder / "build", "--target", "spectrace"]):
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return folder / "build/cli/spectrace"
+    for command in (["cmake", "--preset", "release", "-DSPECTRACE_BUILD_TESTS=OFF"],
+                    ["cmake", "--build", "--preset", "release", "--target", "spectrace"]):
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, cwd=source)
+    return source / "build/release/cli/spectrace"
 
 
 def main() -> None:
@@ -81,6 +90,7 @@ def main() -> None:
     program = arguments.spectrace.resolve()
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
+        make_measurement(program)
         scenes = [ROOT / "scenes" / f"{name}.json" for name in arguments.scenes]
         for scene in scenes if arguments.pairs > 0 else ():
             in_turns(program, small_copy(scene, arguments.size, folder), folder, arguments.pairs, arguments.threads)

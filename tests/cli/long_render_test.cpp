@@ -89,48 +89,61 @@ TEST_F(LongRender, HeadersOfJoinedAndResumedImagesAreThoseOfTheWhole) {
   write_scene("scene.json", R"({"name": "m", "type": "measured", "file": "m.bsdf"})");
   const auto header = [&](const char* file) { return read_metadata(folder_ / file); };
   const auto number = [](const Metadata& of, const char* name) { return std::get<double>(of.at(name)); };
-  const std::vector<std::string> paired{"--separate", "fresnel", "--grid",  "24x20x30",
-                                        "--cache",    "kept",    "--paired"};
-  const auto part = [&](const std::string& name, std::vector<std::string> options) {
-    options.insert(options.end(), paired.begin(), paired.end());
-    ASSERT_EQ(render(name, options).exit_code, 0);
-  };
-  part("whole.exr", {"--spp", "32"});
-  part("a.exr", {"--samples", "0:8", "--threads", "1"});
-  part("b.exr", {"--samples", "8:32", "--threads", "2"});
-  const double seconds =
-      number(header("a.exr"), "spectrace:seconds") + number(header("b.exr"), "spectrace:seconds");
-  ASSERT_EQ(run({"merge", "b.partial", "a.partial", "-o", "merged.exr"}).exit_code, 0);
-  part("resumed.exr", {"--spp", "8", "--checkpoint", "60"});
-  const double before = number(header("resumed.exr"), "spectrace:seconds");
-  part("resumed.exr", {"--spp", "32", "--resume"});
-  const Metadata whole = header("whole.exr");
-  for (const char* file : {"merged.exr", "resumed.exr"}) {
-    const Metadata joined = header(file);
-    for (const auto& [name, value] : whole) {
-      if (name == "spectrace:seconds" || name == "spectrace:threads" || name == "spectrace:extrapolatedShare")
-        continue;
-      ASSERT_TRUE(joined.contains(name)) << file << ": " << name;
-      EXPECT_EQ(joined.at(name), value) << file << ": " << name;
+  const std::vector<std::string> separated{"--separate", "fresnel", "--grid",  "24x20x30",
+                                           "--cache",    "kept",    "--paired"};
+  for (const bool is_separated : {false, true}) {
+    const auto part = [&](const std::string& name, std::vector<std::string> options) {
+      if (is_separated) options.insert(options.end(), separated.begin(), separated.end());
+      ASSERT_EQ(render(name, options).exit_code, 0);
+    };
+    std::filesystem::remove(folder_ / "resumed.partial");
+    part("whole.exr", {"--spp", "32"});
+    part("a.exr", {"--samples", "0:8", "--threads", "1"});
+    part("b.exr", {"--samples", "8:32", "--threads", "2"});
+    const double seconds =
+        number(header("a.exr"), "spectrace:seconds") + number(header("b.exr"), "spectrace:seconds");
+    ASSERT_EQ(run({"merge", "b.partial", "a.partial", "-o", "merged.exr"}).exit_code, 0);
+    part("resumed.exr", {"--spp", "8", "--checkpoint", "60"});
+    const double before = number(header("resumed.exr"), "spectrace:seconds");
+    part("resumed.exr", {"--spp", "32", "--resume"});
+    const Metadata whole = header("whole.exr");
+    EXPECT_EQ(whole.contains("spectrace:separation"), is_separated);
+    for (const char* file : {"merged.exr", "resumed.exr"}) {
+      const Metadata joined = header(file);
+      for (const auto& [name, value] : whole) {
+        ASSERT_TRUE(joined.contains(name)) << file << ": " << name;
+        EXPECT_EQ(joined.at(name).index(), value.index()) << file << ": " << name << " has another type";
+        if (name == "spectrace:seconds" || name == "spectrace:threads" ||
+            name == "spectrace:extrapolatedShare") {
+          continue;
+        }
+        EXPECT_EQ(joined.at(name), value) << file << ": " << name;
+      }
+      // Of counts that are the same; shares were rounded before they were joined.
+      EXPECT_NEAR(number(joined, "spectrace:extrapolatedShare"), number(whole, "spectrace:extrapolatedShare"),
+                  1e-12);
     }
-    // Of counts that are the same; shares were rounded before they were joined.
-    EXPECT_NEAR(number(joined, "spectrace:extrapolatedShare"), number(whole, "spectrace:extrapolatedShare"),
-                1e-12);
-    EXPECT_EQ(joined.at("spectrace:threads").index(), whole.at("spectrace:threads").index());
+    // A separated material has values up to the horizon.
+    EXPECT_EQ(number(whole, "spectrace:extrapolatedShare") > 0, !is_separated);
+    EXPECT_EQ(std::get<std::int64_t>(header("merged.exr").at("spectrace:threads")), 2);
+    EXPECT_DOUBLE_EQ(number(header("merged.exr"), "spectrace:seconds"), seconds);
+    EXPECT_GT(number(header("resumed.exr"), "spectrace:seconds"), before);
   }
-  EXPECT_GT(number(whole, "spectrace:extrapolatedShare"), 0);
-  EXPECT_EQ(std::get<std::int64_t>(header("merged.exr").at("spectrace:threads")), 2);
-  EXPECT_DOUBLE_EQ(number(header("merged.exr"), "spectrace:seconds"), seconds);
-  EXPECT_GT(number(header("resumed.exr"), "spectrace:seconds"), before);
 }
 
 TEST_F(LongRender, MergeRefusesWhatIsNotOneImage) {
   ASSERT_EQ(render("a.exr", {"--samples", "0:16"}).exit_code, 0);
   ASSERT_EQ(render("b.exr", {"--samples", "8:24"}).exit_code, 0);
   ASSERT_EQ(render("seed.exr", {"--samples", "16:24", "--seed", "3"}).exit_code, 0);
+  std::string other = read_text(folder_ / "scene.json");
+  other.replace(other.find("1.5}"), 3, "1.6");
+  write_text(folder_ / "other.json", other);
+  ASSERT_EQ(run({"other.json", "-o", "other.exr", "--samples", "16:24"}).exit_code, 0);
   write_text(folder_ / "whole.exr", "what was there");
   expect_bad_input({"merge", "a.partial", "b.partial", "-o", "whole.exr"}, "b.partial: samples 8:24 overlap");
   expect_bad_input({"merge", "a.partial", "seed.partial", "-o", "whole.exr"}, "seed.partial: is of seed 3");
+  expect_bad_input({"merge", "a.partial", "other.partial", "-o", "whole.exr"},
+                   "other.partial: is of another scene");
   expect_bad_input({"merge", "a.partial", "scene.json", "-o", "whole.exr"}, "scene.json");
   EXPECT_EQ(read_text(folder_ / "whole.exr"), "what was there");
 }
@@ -202,7 +215,16 @@ TEST_F(LongRender, NamesChannelsAsOthersDo) {
   EXPECT_NEAR(at(blender, "ViewLayer.DiffDir.G") * at(blender, "ViewLayer.DiffCol.G"),
               at(own, "diffuse_direct.G"), 1e-5 * at(own, "diffuse_direct.G"));
   ASSERT_EQ(render("kpcn.exr", {"--spp", "8", "--aov-names", "kpcn"}).exit_code, 0);
-  EXPECT_TRUE(read_image(folder_ / "kpcn.exr").find_channel("diffuseVariance.R"));
+  const Image kpcn = read_image(folder_ / "kpcn.exr");
+  // Every buffer of Bako et al. 2017 and its variance.
+  for (const std::string buffer : {"diffuse", "specular", "albedo", "normal", "depth"}) {
+    const std::string first = buffer == "normal" ? ".X" : buffer == "depth" ? ".Z" : ".R";
+    EXPECT_TRUE(kpcn.find_channel(buffer + first)) << buffer;
+    EXPECT_TRUE(kpcn.find_channel(buffer + "Variance" + first)) << buffer;
+    EXPECT_FALSE(kpcn.find_channel(buffer + "_variance" + first)) << buffer;
+  }
+  ASSERT_EQ(render("arnold.exr", {"--spp", "8", "--aov-names", "arnold"}).exit_code, 0);
+  EXPECT_EQ(read_image(folder_ / "arnold.exr").channels, own.channels) << "the names that are ours";
 }
 
 }  // namespace

@@ -40,6 +40,38 @@ TEST_F(ProgressOption, JsonGivesAnObjectALine) {
   EXPECT_TRUE(has_note) << result.errors;
 }
 
+TEST_F(ProgressOption, OfARenderThatATimeEndsKnowsItsEndAndTellsIt) {
+  write_lambert_scene("scene.json");
+  const ProgramResult result =
+      run({"scene.json", "-o", "out.exr", "--progress", "json", "--spp", "1000000000", "--time", "2.5"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  double remaining_s = -1;
+  int known = 0;
+  for (const std::string& line : result.error_lines()) {
+    JsonDocument document = JsonDocument::parse(line, "line");
+    const JsonValue root = document.root();
+    const JsonValue left = root.require("remaining_s");
+    remaining_s = left.is_number() ? left.number(-1) : -1;  // null: nothing tells yet
+    EXPECT_LT(remaining_s, 60) << line << ": by the time, not by the samples";
+    known += remaining_s >= 0 ? 1 : 0;
+  }
+  EXPECT_EQ(remaining_s, 0) << result.errors;
+  EXPECT_GE(known, 2) << result.errors;
+}
+
+TEST_F(ProgressOption, OnATerminalIsALineThatSaysWhatIsLeft) {
+  const char* const terminal = "/usr/bin/script";  // of util-linux: gives a program a terminal of its own
+  if (!std::filesystem::exists(terminal)) GTEST_SKIP() << "no " << terminal;
+  write_lambert_scene("scene.json");
+  const ProgramResult result = run_program(
+      terminal, {"-qec", SPECTRACE_BINARY " scene.json -o out.exr --spp 1000000000 --time 1", "/dev/null"},
+      folder_.path());
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  const std::size_t begin = result.output.find("\r\033[Krendering ");
+  ASSERT_NE(begin, std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(" s left", begin), std::string::npos) << result.output;
+}
+
 TEST_F(ProgressOption, OfShortWorkInALogIsSilent) {
   write_lambert_scene("scene.json");
   for (const char* style : {"auto", "plain"}) {
