@@ -18,6 +18,7 @@ from pathlib import Path
 from unused_effects import ROOT, small_copy
 
 sys.path.insert(0, str(ROOT / "tests"))
+LEAF = 8  # samples that ranges are multiples of
 
 
 def run(*command: object) -> tuple[float, int]:
@@ -90,6 +91,9 @@ def main() -> None:
     parser.add_argument("--measurements", type=Path, help="folder of .bsdf files to separate as Slurm arrays")
     parser.add_argument("--separate-options", default="", help="of spectrace separate")
     arguments = parser.parse_args()
+    for count in arguments.shards:
+        if arguments.spp % (LEAF * count) != 0:
+            parser.error(f"--spp {arguments.spp}: in {count} shards, each needs a multiple of {LEAF} samples")
     program = arguments.spectrace.resolve()
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "core/image/spectral_image.h"
 #include "materials/dielectric.h"
@@ -19,10 +22,11 @@ struct SpectralRender {
   Image rgb, spectral;
 };
 
-SpectralRender render_bins(const SceneDesc& description, int spp, Layer layer = Layer::kBeauty) {
+SpectralRender render_bins(const SceneDesc& description, int spp, Layer layer = Layer::kBeauty,
+                           std::uint64_t seed = 0) {
   SilentProgress progress;
   const Scene scene = build_scene(description, progress);
-  RenderSession session(scene, {.spp = spp});
+  RenderSession session(scene, {.spp = spp, .seed = seed});
   session.finish(progress);
   return {session.film().resolve(), session.film().resolve_spectral(layer)};
 }
@@ -74,21 +78,52 @@ double sidak_limit(std::size_t count) {
   return low;
 }
 
+/// Amplitudes of the periods n, n / 2, n / 3, ... bins in a residual of n.
+std::vector<std::complex<double>> periods_of(const std::vector<double>& residual) {
+  const std::size_t n = residual.size();
+  std::vector<std::complex<double>> amplitudes((n - 1) / 2);
+  for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+    for (std::size_t i = 0; i < n; ++i) {
+      amplitudes[k] +=
+          residual[i] * std::polar(1.0, 2 * std::numbers::pi * double(k + 1) * double(i) / double(n));
+    }
+  }
+  return amplitudes;
+}
+
 /// Fisher's g: the share of the strongest period in a residual. Its tail is below count (1 - g)^(count - 1).
 double strongest_period_p(const std::vector<double>& residual) {
-  const std::size_t n = residual.size(), count = (n - 1) / 2;
   double total = 0, most = 0;
-  for (std::size_t k = 1; k <= count; ++k) {
-    double re = 0, im = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double phase = 2 * std::numbers::pi * double(k) * double(i) / double(n);
-      re += residual[i] * std::cos(phase);
-      im += residual[i] * std::sin(phase);
-    }
-    total += re * re + im * im;
-    most = std::max(most, re * re + im * im);
+  const auto amplitudes = periods_of(residual);
+  for (const auto& amplitude : amplitudes) {
+    total += std::norm(amplitude);
+    most = std::max(most, std::norm(amplitude));
   }
-  return std::min(1.0, double(count) * std::pow(1 - most / total, double(count) - 1));
+  const auto count = double(amplitudes.size());
+  return std::min(1.0, count * std::pow(1 - most / total, count - 1));
+}
+
+/// Of residuals of independent renders: how likely noise alone is to agree as well in the phase of any
+/// period, by Šidák. A period that every render has keeps its phase. Noise has one at random: with complex
+/// normal amplitudes |mean|² / mean |amplitude|² is Beta(1, renders - 1), whatever the power is at that
+/// period. Stratified wavelengths leave noise between neighbours, and so no white one, as Fisher's g
+/// supposes.
+double common_period_p(const std::vector<std::vector<double>>& residuals) {
+  const auto renders = double(residuals.size());
+  std::vector<std::complex<double>> sums(periods_of(residuals[0]).size());
+  std::vector<double> powers(sums.size());
+  for (const auto& residual : residuals) {
+    const auto amplitudes = periods_of(residual);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      sums[k] += amplitudes[k];
+      powers[k] += std::norm(amplitudes[k]);
+    }
+  }
+  double least = 1;
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    least = std::min(least, std::pow(1 - std::norm(sums[k]) / (renders * powers[k]), renders - 1));
+  }
+  return 1 - std::pow(1 - least, double(sums.size()));
 }
 
 TEST(SpectralFilm, FlatSpectraStayFlatAndWithoutPeriod) {
@@ -106,6 +141,33 @@ TEST(SpectralFilm, FlatSpectraStayFlatAndWithoutPeriod) {
     EXPECT_LT(worst, sidak_limit(estimates.size())) << "standard errors, at_centers " << at_centers;
     EXPECT_GT(strongest_period_p(residual), kAlpha) << "at_centers " << at_centers;
   }
+}
+
+TEST(SpectralFilm, RendersShareNoPeriod) {
+  constexpr std::uint64_t kRenders = 12;
+  const SceneDesc scene = with_bins(grey_furnace(), {.range = {360, 1000}, .count = 195});
+  std::vector<std::vector<double>> residuals;
+  std::vector<double> sums(195), variances(195);
+  for (std::uint64_t seed = 1; seed <= kRenders; ++seed) {
+    residuals.emplace_back();
+    for (const Estimate& e : bin_estimates(render_bins(scene, 32, Layer::kBeauty, seed).spectral)) {
+      const std::size_t b = residuals.back().size();
+      residuals.back().push_back((e.mean - 0.5) / e.standard_error);
+      sums[b] += e.mean - 0.5;
+      variances[b] += e.standard_error * e.standard_error;
+    }
+  }
+  EXPECT_GT(common_period_p(residuals), kAlpha);
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    EXPECT_LT(std::abs(sums[b]), sidak_limit(sums.size()) * std::sqrt(variances[b])) << b;
+  }
+  // It can fail: a period of eight bins of which each render alone says little.
+  for (auto& residual : residuals) {
+    for (std::size_t b = 0; b < residual.size(); ++b) {
+      residual[b] += 0.4 * std::cos(2 * std::numbers::pi * double(b) / 8.125);  // 195 bins are 24 of them
+    }
+  }
+  EXPECT_LT(common_period_p(residuals), kAlpha);
 }
 
 TEST(SpectralFilm, PeriodsAreFound) {
