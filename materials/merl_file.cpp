@@ -41,12 +41,12 @@ MerlBrdf::MerlBrdf(std::span<const std::byte> bytes, const std::string& file_nam
         file_name, "byte 0: field \"dims\"",
         fmt::format("expected {} x {} x {}, little endian", kDimensions[0], kDimensions[1], kDimensions[2]));
   }
-  values_.resize(grid_.size());
-  const std::size_t expected = kHeader + 3 * values_.size() * sizeof(double);
+  const std::size_t expected = kHeader + 3 * grid_.size() * sizeof(double);
   if (bytes.size() != expected) {
     throw InputError(file_name, fmt::format("byte {}", std::min(bytes.size(), expected)),
                      fmt::format("{} bytes, expected {}", bytes.size(), expected));
   }
+  values_.resize(grid_.size());  // not before: a header alone must not cost the memory of a file
   for (std::size_t channel = 0; channel < 3; ++channel) {
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const std::size_t offset = kHeader + (channel * values_.size() + i) * sizeof(double);

@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "core/math/math.h"
+#include "tests/support/pearson.h"
 
 namespace spectrace::test {
 
 namespace {
-
-/// Below this many expected samples Pearson's statistic is no chi-square: such cells are pooled (Cochran
-/// 1954).
-constexpr double kMinExpected = 5;
 
 /// A direction as (s, φ): s = sqrt(1 - cosθ) in [0, 1], exact for lobes around the normal where cosθ has lost
 /// all digits; dω = 2 s ds dφ.
@@ -49,6 +46,38 @@ class Chart {
 
 struct Cell {
   double s0 = 0, s1 = 1, phi0 = -kPi64, phi1 = kPi64;
+};
+
+/// Bins of one size over the hemisphere: where a place lies, and where a cell is to be cut so that every part
+/// lies in one of them.
+class BinGrid {
+ public:
+  BinGrid(std::size_t rows, std::size_t columns) : rows_(rows), columns_(columns) {}
+  [[nodiscard]] std::size_t size() const { return rows_ * columns_; }
+  [[nodiscard]] std::size_t find(CellPoint p) const {
+    const double turn = (p.phi + kPi64) / (2 * kPi64);
+    return index(p.s * p.s, rows_) * columns_ + index(turn, columns_);
+  }
+  void cut_rows(std::vector<double>& s) const {
+    cut(s, rows_, [&](std::size_t i) { return std::sqrt(double(i) / double(rows_)); });
+  }
+  void cut_columns(std::vector<double>& phi) const {
+    cut(phi, columns_, [&](std::size_t i) { return (2 * double(i) / double(columns_) - 1) * kPi64; });
+  }
+
+ private:
+  static std::size_t index(double x, std::size_t n) {
+    return std::min(static_cast<std::size_t>(std::max(x, 0.0) * double(n)), n - 1);
+  }
+  static void cut(std::vector<double>& points, std::size_t n, const auto& edge) {
+    const double low = points.front(), high = points.back();
+    for (std::size_t i = 1; i < n; ++i) {
+      if (const double x = edge(i); x > low && x < high) points.push_back(x);
+    }
+    std::sort(points.begin(), points.end());
+  }
+
+  std::size_t rows_, columns_;
 };
 
 /// A few pilots, the box around them where most of the leaf's mass lies, and the cell it belongs to.
@@ -140,8 +169,11 @@ class CellTree {
 /// Gauss-Legendre with 3 x 3 points a leaf, compared with four quarters of it, and so on.
 class Quadrature {
  public:
-  Quadrature(const DirectionDensity& density, const Chart& chart, double relative, double absolute)
-      : density_(density), chart_(chart), relative_(relative), absolute_(absolute) {}
+  Quadrature(const DirectionDensity& density, const Chart& chart, double relative, double absolute,
+             const BinGrid& bins)
+      : density_(density), chart_(chart), relative_(relative), absolute_(absolute), bins_(bins) {
+    in_bins_.resize(bins.size());
+  }
 
   /// A leaf at the skirt of a lobe is far wider than its mass, and a rule that looks for it by halving may
   /// see nothing at all. So the box of the pilots comes first, then strips that double in width away from it.
@@ -152,18 +184,44 @@ class Quadrature {
     const std::vector<double> phi = breakpoints(c.phi0, box.phi0, box.phi1, c.phi1);
     for (std::size_t i = 0; i + 1 < s.size(); ++i) {
       for (std::size_t j = 0; j + 1 < phi.size(); ++j) {
-        const Cell part{s[i], s[i + 1], phi[j], phi[j + 1]};
-        sum += refine(part, gauss(part), 0);
+        sum += integrate_part({s[i], s[i + 1], phi[j], phi[j + 1]});
       }
     }
     return sum;
   }
+  [[nodiscard]] const std::vector<double>& in_bins() const { return in_bins_; }
   double error() const { return error_; }
   std::size_t evaluations() const { return evaluations_; }
 
  private:
   // 4^7 quarters resolve a peak of 1/128 of the leaf's side; leaves already follow the pilots.
   static constexpr int kMaxDepth = 7;
+
+  /// So little mass is no sample in a hundred of those drawn: it goes to one bin whole.
+  static constexpr double kNegligible = 1e-9;
+
+  double integrate_part(const Cell& part) {
+    const double error = error_, whole = refine(part, gauss(part), 0);
+    if (bins_.size() == 0) return whole;
+    std::vector<double> s{part.s0, part.s1}, phi{part.phi0, part.phi1};
+    bins_.cut_rows(s), bins_.cut_columns(phi);
+    const auto middle = [](double a, double b) { return (a + b) / 2; };
+    if (whole < kNegligible || (s.size() == 2 && phi.size() == 2)) {
+      in_bins_[bins_.find({middle(part.s0, part.s1), middle(part.phi0, part.phi1)})] += whole;
+      return whole;
+    }
+    error_ = error;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+      for (std::size_t j = 0; j + 1 < phi.size(); ++j) {
+        const Cell piece{s[i], s[i + 1], phi[j], phi[j + 1]};
+        const double mass = refine(piece, gauss(piece), 2);  // 2: a piece is some 16th of its leaf
+        in_bins_[bins_.find({middle(piece.s0, piece.s1), middle(piece.phi0, piece.phi1)})] += mass;
+        sum += mass;
+      }
+    }
+    return sum;
+  }
 
   static std::vector<double> breakpoints(double low, double box_low, double box_high, double high) {
     const double width = std::max(box_high - box_low, 1e-3 * (high - low));
@@ -212,61 +270,13 @@ class Quadrature {
   const DirectionDensity& density_;
   const Chart& chart_;
   double relative_, absolute_;
+  const BinGrid& bins_;
+  std::vector<double> in_bins_;
   double error_ = 0;
   std::size_t evaluations_ = 0;
 };
 
-struct CellCount {
-  double expected = 0, observed = 0;
-};
-
-/// Pools cells that expect too few samples, with the least of the others where that is still too few.
-void pool(std::vector<CellCount>& cells) {
-  std::sort(cells.begin(), cells.end(), [](CellCount a, CellCount b) { return a.expected < b.expected; });
-  CellCount pooled = cells.front();
-  auto next = cells.begin() + 1;
-  for (; next != cells.end() && (next->expected < kMinExpected || pooled.expected < kMinExpected); ++next) {
-    pooled.expected += next->expected;
-    pooled.observed += next->observed;
-  }
-  cells.erase(cells.begin() + 1, next);
-  cells.front() = pooled;
-}
-
-/// Regularised upper incomplete gamma function: series below, continued fraction (Lentz) above the mean.
-double upper_gamma(double a, double x) {
-  constexpr double kTiny = 1e-300, kPrecision = 1e-14;
-  if (x <= 0) return 1;
-  const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
-  if (x < a + 1) {
-    double term = 1 / a, sum = term;
-    for (double n = a + 1; std::abs(term) > kPrecision * sum; ++n) sum += term *= x / n;
-    return 1 - scale * sum;
-  }
-  double b = x + 1 - a, c = 1 / kTiny, d = 1 / b, h = d;
-  for (double i = 1;; ++i) {
-    const double an = -i * (i - a);
-    b += 2;
-    d = an * d + b;
-    d = 1 / (std::abs(d) < kTiny ? kTiny : d);
-    c = b + an / c;
-    c = std::abs(c) < kTiny ? kTiny : c;
-    const double delta = d * c;
-    h *= delta;
-    if (std::abs(delta - 1) < kPrecision) return scale * h;
-  }
-}
-
 }  // namespace
-
-double chi_square_p_value(double statistic, double degrees_of_freedom) {
-  if (!std::isfinite(statistic)) return 0;
-  return upper_gamma(degrees_of_freedom / 2, statistic / 2);
-}
-
-double sidak_level(double alpha, std::size_t trials) {
-  return -std::expm1(std::log1p(-alpha) / static_cast<double>(trials));
-}
 
 std::uint64_t TestRandom::next() {
   state_ += 0x9e3779b97f4a7c15U;
@@ -299,17 +309,20 @@ SamplingTestResult test_sampling(const DrawDirection& draw, const DirectionDensi
 
   SamplingTestResult result;
   result.cells = tree.cells();
-  std::vector<CellCount> counts(result.cells);
+  const BinGrid bins(options.bin_rows, options.bin_columns);
+  std::vector<CellCount> counts(result.cells), bin_counts(bins.size());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < options.samples; ++i) {
     const std::optional<Vec3> w = draw(random);
     if (!w) continue;
     ++kept;
     if (!(w->z > 0)) ++result.below_horizon;
-    ++counts[tree.find(chart.to_cell(*w))].observed;
+    const CellPoint at = chart.to_cell(*w);
+    ++counts[tree.find(at)].observed;
+    if (!bin_counts.empty()) ++bin_counts[bins.find(at)].observed;
   }
   Quadrature quadrature(density, chart, options.quadrature_tolerance,
-                        options.quadrature_tolerance / static_cast<double>(tree.leaves().size()));
+                        options.quadrature_tolerance / static_cast<double>(tree.leaves().size()), bins);
   for (const Leaf& leaf : tree.leaves()) {
     const double mass = quadrature.integrate(leaf);
     counts[leaf.cell].expected += mass;
@@ -325,14 +338,15 @@ SamplingTestResult test_sampling(const DrawDirection& draw, const DirectionDensi
   result.p_value_kept = std::erfc(excess / std::sqrt(2 * variance));
 
   if (!(result.integral > 0)) return result;  // nothing to draw: told apart by p_value_kept
-  for (CellCount& c : counts) c.expected *= static_cast<double>(kept) / result.integral;
-  pool(counts);
-  for (const CellCount& c : counts) {
-    const double difference = c.observed - c.expected;
-    result.statistic += difference * difference / std::max(c.expected, 1e-3);
+  const PearsonTest shape = test_shape(std::move(counts), static_cast<double>(kept), result.integral);
+  result.statistic = shape.statistic;
+  result.degrees_of_freedom = shape.degrees_of_freedom;
+  result.p_value = shape.p_value;
+  if (!bin_counts.empty()) {
+    for (std::size_t i = 0; i < bin_counts.size(); ++i) bin_counts[i].expected = quadrature.in_bins()[i];
+    result.p_value_bins =
+        test_shape(std::move(bin_counts), static_cast<double>(kept), result.integral).p_value;
   }
-  result.degrees_of_freedom = std::max(static_cast<double>(counts.size()) - 1, 1.0);
-  result.p_value = chi_square_p_value(result.statistic, result.degrees_of_freedom);
   return result;
 }
 

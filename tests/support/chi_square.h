@@ -10,13 +10,9 @@
 #include <string>
 
 #include "core/math/vec.h"
+#include "tests/support/pearson.h"
 
 namespace spectrace::test {
-
-/// Probability that a chi-square variable of `degrees_of_freedom` exceeds `statistic`.
-double chi_square_p_value(double statistic, double degrees_of_freedom);
-/// Significance of each of `trials` tests so that all of them together have `alpha`: Šidák 1967.
-double sidak_level(double alpha, std::size_t trials);
 
 /// Uniform numbers in [0, 1), the same on every platform: SplitMix64 (Steele et al. 2014).
 class TestRandom {
@@ -49,11 +45,15 @@ struct SamplingTestOptions {
   double quadrature_tolerance = 1e-3;
   std::uint64_t seed = 1;
   Vec3 azimuth_zero{1, 0, 0};  ///< cells are cut at the azimuth opposite to it: point it at the lobe
+  /// Beside the cells, as many bins of one size over the hemisphere: rows of equal height in cosθ, columns in
+  /// azimuth; 0: none. The same samples are counted in both.
+  std::size_t bin_rows = 0, bin_columns = 0;
 };
 
 struct SamplingTestResult {
   double statistic = 0, degrees_of_freedom = 0;
   double p_value = 1;         ///< of the shape: kept samples over cells against the density's cell integrals
+  double p_value_bins = 1;    ///< of the shape over the bins of one size, where asked for
   double integral = 0;        ///< of the density over the hemisphere
   double integral_error = 0;  ///< the quadrature's own estimate
   double kept = 0;            ///< share of samples not lost

@@ -17,12 +17,13 @@ inline std::filesystem::path data_folder() {
                            : std::filesystem::path(SPECTRACE_SOURCE_DIR) / "../shared/data";
 }
 
-/// The `.bsdf` files of a sub-folder ("epfl_rgb"), sorted by name; empty where it is absent.
-inline std::vector<std::filesystem::path> measured_files(const std::string& sub_folder) {
+/// The measurements of a sub-folder ("epfl_rgb"), sorted by name; empty where it is absent.
+inline std::vector<std::filesystem::path> measured_files(const std::string& sub_folder,
+                                                         const std::string& extension = ".bsdf") {
   std::vector<std::filesystem::path> files;
   std::error_code absent;
   for (const auto& entry : std::filesystem::directory_iterator(data_folder() / sub_folder, absent)) {
-    if (entry.path().extension() == ".bsdf") files.push_back(entry.path());
+    if (entry.path().extension() == extension) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
