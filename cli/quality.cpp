@@ -75,7 +75,7 @@ void pick_setting(SceneDesc& scene, const SceneSeparation& separation, Progress&
     scene.spp = int(std::clamp(std::ceil(answer->samples), 1.0, 1e9));
     scene.quality = {};
   }
-  if (answer->record->knob != "exact") {
+  if (const std::string& knob = answer->record->knob; knob != "exact" && knob != kSamplerKnob) {
     scene.approximations.push_back(fmt::format("{} for a quality of {}", title, text_of(quality)));
   }
   progress.note(fmt::format("quality {}: {}, {:.0f} samples, {:.3g} s and a relative error of {:.3g} by {}",

@@ -5,7 +5,7 @@
 
 #include "cli/compare/figures.h"
 #include "cli/compare/pictures.h"
-#include "cli/report/bar_chart.h"
+#include "cli/report/canvas.h"
 #include "core/base/version.h"
 
 namespace spectrace::cli {

@@ -9,11 +9,20 @@
 
 namespace spectrace::cli {
 
+namespace {
+
+/// Independent samples are there to hold stratified ones against: in no time are they the better.
+bool is_for_comparison(const CostRecord& record) {
+  return record.knob == kSamplerKnob && record.name == sampler_name(SamplerKind::kIndependent);
+}
+
+}  // namespace
+
 std::optional<Answer> cheapest(const CostStudy& study, double rel_mse) {
   std::optional<Answer> best;
   for (const CostRecord& record : study.records) {
     const std::optional<double> samples = record.model.samples_for(rel_mse);
-    if (!samples) continue;
+    if (!samples || is_for_comparison(record)) continue;
     const double seconds = record.model.seconds(*samples);
     if (!best || seconds < best->seconds) best = {rel_mse, &record, *samples, seconds};
   }
@@ -25,7 +34,7 @@ std::optional<Answer> best_within(const CostStudy& study, double seconds) {
   for (const CostRecord& record : study.records) {
     const ErrorModel& model = record.model;
     const double samples = (seconds - model.start) / model.per_sample;
-    if (!(samples >= 1)) continue;
+    if (!(samples >= 1) || is_for_comparison(record)) continue;
     const double rel_mse = model.rel_mse(samples);
     if (!best || rel_mse < best->rel_mse) best = {rel_mse, &record, samples, seconds};
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "cli/report/exposure.h"
@@ -21,10 +22,12 @@ namespace {
 /// Of the budget: the reference's share. The error of a setting with as much noise as the exact one is then
 /// told from its own at a few times the samples.
 constexpr double kReferenceShare = 0.3;
-/// What is left to write the report in.
-constexpr double kMeasuringShare = 0.95;
-/// Settings that would begin later are left out.
-constexpr double kMostOverdraft = 1.1;
+/// The rest is left to write the report in, and for what takes longer than it seemed.
+constexpr double kMeasuringShare = 0.9;
+/// Of the budget: settings that would end later are left out.
+constexpr double kMostOverdraft = 1.05;
+/// Smaller pictures would be another scene.
+constexpr int kLeastSide = 48;
 constexpr int kFewestPoints = 3, kMostPoints = 10;
 /// Where the budget has no time for three: a line goes through two.
 constexpr int kFewestPointsInHaste = 2;
@@ -39,9 +42,13 @@ Image beauty_of(const RenderResult& result) {
   return result.image.select(channels, "render");
 }
 
-RenderResult render_at(const Scene& scene, int spp, std::uint64_t seed, const CostOptions& options) {
+/// `most_seconds`: fewer samples where they would take longer; 0: whatever they take.
+RenderResult render_at(const Scene& scene, int spp, std::uint64_t seed, const CostOptions& options,
+                       double most_seconds = 0) {
   SilentProgress silent;
-  return render(scene, {.spp = spp, .seed = seed, .threads = options.threads, .aovs = kNoAovs}, silent);
+  return render(
+      scene, {.spp = spp, .seed = seed, .threads = options.threads, .aovs = kNoAovs, .seconds = most_seconds},
+      silent);
 }
 
 /// The scene as it is, twice: what the two do not share tells noise from bias.
@@ -114,83 +121,163 @@ CostRecord measure(const Setting& setting, const Scene& scene, const Reference& 
   return record;
 }
 
-}  // namespace
+/// What a ladder of so many points takes, and the parts by lobe and band [samples a pixel].
+constexpr int ladder_spp(int points) { return kFirstSpp * ((1 << points) - 1) + 2 * kPartSpp; }
 
-CostStudy measure_cost(const SceneDesc& description, const std::vector<Setting>& settings,
-                       const CostOptions& options, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto elapsed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  CostStudy study;
-  study.scene = description.file_name;
-  study.content = content_of(description);
-  const double budget = options.budget_seconds * kMeasuringShare;
-  const auto total = double(settings.size() + 1);
-  progress.update("cost", 0, total);
-  Reference reference;
-  double seconds_a_sample = 0;
-  {
-    const Scene scene = build_scene(description, progress);
-    const RenderReport probe = render_at(scene, kProbeSpp, kReferenceSeed, options).report;
-    seconds_a_sample = std::max(probe.seconds, 1e-3) / kProbeSpp;
-    if (!options.reference.empty()) {
-      const Image given = given_reference(options.reference, description.film.window());
-      reference = reference_of(given, given);
-    } else {
-      const double affordable = kReferenceShare * budget / seconds_a_sample;
-      study.reference_spp = std::max(kLeastReferenceSpp, int(std::min(affordable, 1e6)) / 16 * 16);
-      const RenderResult first = render_at(scene, study.reference_spp / 2, kReferenceSeed, options);
-      const RenderResult second = render_at(scene, study.reference_spp / 2, kReferenceSeed + 1, options);
-      reference = reference_of(beauty_of(first), beauty_of(second));
-      study.reference_seconds = first.report.seconds + second.report.seconds;
-    }
-    study.threads = probe.threads;
+/// A study under way: what it has to do is cut to the time that is left.
+class Measurement {
+ public:
+  Measurement(const SceneDesc& scene, const std::vector<Setting>& settings, const CostOptions& options,
+              Progress& progress)
+      : scene_(scene), settings_(settings), options_(options), progress_(progress) {
+    study_.scene = scene.file_name;
+    study_.content = content_of(scene);
+    study_.scene_width = scene.film.window().width;
+    study_.scene_height = scene.film.window().height;
   }
-  const PartPair reference_parts =
-      render_parts(description, kReferencePartSpp, kReferenceSeed + 2, options.threads, progress);
-  study.reference = reference.mean;
-  study.exposure = reference.exposure;
-  study.epsilon = reference.metrics.epsilon;
-  study.width = study.reference.width;
-  study.height = study.reference.height;
-  study.reference_rel_mse = noise_rel_mse(reference.pair(), study.epsilon).value;
-  const auto needed = [&](int points) {
-    return seconds_a_sample * (kFirstSpp * ((1 << points) - 1) + 2 * kPartSpp);
-  };
-  if (const double least = elapsed() + needed(kFewestPointsInHaste) * double(settings.size());
-      least > budget) {
-    progress.note(
-        fmt::format("{:.0f} s are too few for {} settings of this scene: it would take about {:.0f} s",
-                    options.budget_seconds, settings.size(), least));
-  }
-  for (const Setting& setting : settings) {
-    progress.update("cost", double(&setting - settings.data()) + 1, total);
-    const double settings_left = total - 1 - double(&setting - settings.data());
-    const double each = (budget - elapsed()) / settings_left;
-    const int fewest_points = needed(kFewestPoints) <= each ? kFewestPoints : kFewestPointsInHaste;
-    if (!study.records.empty() && elapsed() > kMostOverdraft * options.budget_seconds) {
-      study.left_out.push_back(fmt::format("{}: no time left", setting.title()));
-      continue;
+
+  CostStudy run() {
+    const double total = double(settings_.size()) + 2;
+    progress_.update("cost", 0, total);
+    for (const Setting& setting : settings_) prepare(setting);
+    progress_.update("cost", 1, total);
+    probe();
+    if (options_.reference.empty() && shrink()) probe();
+    make_reference();
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+      progress_.update("cost", double(i + 2), total);
+      measure_setting(scenes_[i], scenes_.size() - i);
     }
-    SceneDesc changed = description;
+    SPECTRACE_CHECK(!study_.records.empty());
+    return std::move(study_);
+  }
+
+ private:
+  struct SettingScene {
+    const Setting* setting = nullptr;
+    SceneDesc scene;
+  };
+
+  /// Before anything is measured, for it may take long: separations are made here.
+  void prepare(const Setting& setting) {
+    SettingScene prepared{&setting, scene_};
     try {
-      setting.apply(changed, progress);
+      setting.apply(prepared.scene, progress_);
+      scenes_.push_back(std::move(prepared));
+    } catch (const InputError& e) {
+      leave_out(setting, e.diagnostics().front().text());
+    }
+  }
+  void leave_out(const Setting& setting, const std::string& reason) {
+    study_.left_out.push_back(fmt::format("{}: {}", setting.title(), reason));
+  }
+
+  [[nodiscard]] double left() const {
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    return options_.budget_seconds * kMeasuringShare - elapsed;
+  }
+  [[nodiscard]] double ladder_seconds(int points) const { return seconds_a_sample_ * ladder_spp(points); }
+
+  void probe() {
+    const Scene scene = build_scene(scene_, progress_);
+    const RenderReport report = render_at(scene, kProbeSpp, kReferenceSeed, options_).report;
+    seconds_a_sample_ = std::max(report.seconds, 1e-3) / kProbeSpp;
+    study_.threads = report.threads;
+  }
+
+  /// Fewer pixels where there is no time for all: what is measured is a mean over pixels. True: there are.
+  bool shrink() {
+    const double wanted =
+        ladder_seconds(kFewestPoints) * double(scenes_.size()) + seconds_a_sample_ * 2 * kReferencePartSpp;
+    const double affordable = std::max(0.0, (1 - kReferenceShare) * left());
+    if (wanted <= affordable || scene_.film.crop) return false;
+    const double factor = std::sqrt(affordable / wanted);
+    FilmDesc& film = scene_.film;
+    const auto shrunk = [&](int side) {
+      return std::clamp(int(side * factor), std::min(side, kLeastSide), side);
+    };
+    film.width = shrunk(film.width);
+    film.height = shrunk(film.height);
+    progress_.note(fmt::format("{:.0f} s are too few for {} settings at {} x {} pixels: {} x {} are taken",
+                               options_.budget_seconds, scenes_.size(), study_.scene_width,
+                               study_.scene_height, film.width, film.height));
+    return true;
+  }
+
+  void make_reference() {
+    if (!options_.reference.empty()) {
+      const Image given = given_reference(options_.reference, scene_.film.window());
+      reference_ = reference_of(given, given);
+    } else {
+      render_reference();
+    }
+    parts_ = render_parts(scene_, kReferencePartSpp, kReferenceSeed + 2, options_.threads, progress_);
+    study_.reference = reference_.mean;
+    study_.exposure = reference_.exposure;
+    study_.epsilon = reference_.metrics.epsilon;
+    study_.width = study_.reference.width;
+    study_.height = study_.reference.height;
+    study_.reference_rel_mse = noise_rel_mse(reference_.pair(), study_.epsilon).value;
+  }
+
+  void render_reference() {
+    const double seconds = kReferenceShare * left();
+    const double affordable = std::min(seconds / seconds_a_sample_, 1e6);
+    const int wanted = std::max(kLeastReferenceSpp, int(affordable) / 16 * 16) / 2;
+    const Scene scene = build_scene(scene_, progress_);
+    const RenderResult first = render_at(scene, wanted, kReferenceSeed, options_, seconds / 2);
+    const int spp = int(first.report.samples.count());
+    const RenderResult second = render_at(scene, spp, kReferenceSeed + 1, options_);
+    reference_ = reference_of(beauty_of(first), beauty_of(second));
+    study_.reference_spp = 2 * spp;
+    study_.reference_seconds = first.report.seconds + second.report.seconds;
+    // Other programs may have come in between.
+    seconds_a_sample_ = std::max(seconds_a_sample_, study_.reference_seconds / study_.reference_spp);
+  }
+
+  void measure_setting(SettingScene& prepared, std::size_t settings_left) {
+    const Setting& setting = *prepared.setting;
+    SceneDesc& scene = prepared.scene;
+    scene.film.width = scene_.film.width;
+    scene.film.height = scene_.film.height;
+    const double each = left() / double(settings_left);
+    const int fewest_points = ladder_seconds(kFewestPoints) <= each ? kFewestPoints : kFewestPointsInHaste;
+    const double overdraft = (kMostOverdraft - kMeasuringShare) * options_.budget_seconds;
+    if (!study_.records.empty() && left() + overdraft < ladder_seconds(kFewestPointsInHaste)) {
+      leave_out(setting, "no time left");
+      return;
+    }
+    try {
       reset_peak_memory();
-      const double for_ladder = each - 2 * kPartSpp * seconds_a_sample;
+      const double for_ladder = each - 2 * kPartSpp * seconds_a_sample_;
       CostRecord record =
-          measure(setting, build_scene(changed, progress), reference, for_ladder, fewest_points, options);
+          measure(setting, build_scene(scene, progress_), reference_, for_ladder, fewest_points, options_);
       record.peak_memory_bytes = peak_memory_bytes();
       record.parts = bias_by_part(
-          render_parts(changed, kPartSpp, changed.seed + kMostPoints + 1, options.threads, progress),
-          reference_parts);
-      study.records.push_back(std::move(record));
+          render_parts(scene, kPartSpp, scene.seed + kMostPoints + 1, options_.threads, progress_), parts_);
+      study_.records.push_back(std::move(record));
     } catch (const InputError& e) {
-      study.left_out.push_back(fmt::format("{}: {}", setting.title(), e.diagnostics().front().text()));
+      leave_out(setting, e.diagnostics().front().text());
     }
   }
-  SPECTRACE_CHECK(!study.records.empty());
-  return study;
+
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  SceneDesc scene_;
+  const std::vector<Setting>& settings_;
+  const CostOptions& options_;
+  Progress& progress_;
+  std::vector<SettingScene> scenes_;
+  double seconds_a_sample_ = 0;
+  Reference reference_;
+  PartPair parts_;
+  CostStudy study_;
+};
+
+}  // namespace
+
+CostStudy measure_cost(const SceneDesc& scene, const std::vector<Setting>& settings,
+                       const CostOptions& options, Progress& progress) {
+  return Measurement(scene, settings, options, progress).run();
 }
 
 }  // namespace spectrace::cli

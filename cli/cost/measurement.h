@@ -31,8 +31,9 @@ struct CostRecord {
 };
 
 struct CostStudy {
-  std::string scene, content;  ///< file, and content_of() it
-  int width = 0, height = 0, threads = 0;
+  std::string scene, content;              ///< file, and content_of() it
+  int width = 0, height = 0, threads = 0;  ///< as measured: pixels may be fewer than the scene's
+  int scene_width = 0, scene_height = 0;
   int reference_spp = 0;  ///< 0: it was given
   double reference_seconds = 0;
   double reference_rel_mse = 0;  ///< its own noise
@@ -49,7 +50,10 @@ struct CostOptions {
   int threads = 0;
 };
 
-/// A reference, then every setting at doubling numbers of samples, as many as the budget lets.
+/// A reference, then every setting at doubling numbers of samples, as many as the budget lets. What is left
+/// of it is looked at before each step: where it is too little for three points a setting, the picture has
+/// fewer pixels; where that is not enough, settings have two points, and what would still end after the
+/// budget is left out, by name.
 [[nodiscard]] CostStudy measure_cost(const SceneDesc& scene, const std::vector<Setting>& settings,
                                      const CostOptions& options, Progress& progress);
 

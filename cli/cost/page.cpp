@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "cli/cost/answers.h"
+#include "cli/cost/plots.h"
+#include "cli/report/canvas.h"
 #include "core/base/version.h"
 #include "core/image/error_map.h"
 
@@ -32,15 +34,6 @@ constexpr const char* kScript =
     "document.addEventListener('pointerover',event=>{const label=event.target.dataset?.label;"
     "if(label)told.textContent=label});";
 
-constexpr int kLinePoints = 40;
-
-std::string point_label(const CostRecord& record, const CostPoint& point) {
-  return fmt::format(
-      "{}, {} samples: {:.3g} s, relMSE {:.3g}, MAPE {:.3g} %, PSNR {:.2f} dB, CIEDE2000 {:.3g}",
-      record.title, point.spp, point.seconds, point.metrics.rel_mse, 100 * point.metrics.mape,
-      point.metrics.psnr_db, point.ciede2000);
-}
-
 std::string percent(double share) { return fmt::format("{:.3g}", 100 * share); }
 
 /// Where it was measured: at the fewest samples.
@@ -55,6 +48,30 @@ std::string reference_text(const CostStudy& study) {
       "{:.2g}, "
       "which all measured errors hold.",
       study.reference_spp, study.reference_seconds, study.reference_rel_mse);
+}
+
+std::string size_text(const CostStudy& study) {
+  const bool is_whole = study.width == study.scene_width && study.height == study.scene_height;
+  return is_whole ? fmt::format("{} x {} pixels", study.width, study.height)
+                  : fmt::format("{} x {} pixels, for the budget had no time for the scene's {} x {},",
+                                study.width, study.height, study.scene_width, study.scene_height);
+}
+
+/// What the fits can be held against: independent samples obey a law, stratified ones should be better.
+std::string noise_text(const CostStudy& study) {
+  const SamplerPair samplers = samplers_of(study);
+  if (samplers.independent == nullptr) return "";
+  const ErrorModel &own = samplers.stratified->model, &other = samplers.independent->model;
+  const double most =
+      std::min(samplers.stratified->points.back().spp, samplers.independent->points.back().spp);
+  return fmt::format(
+      "<p>Of independent samples the noise part must fall as 1/time: its slope here is -{:.2f}. "
+      "Owen-scrambled "
+      "Sobol' points, stratified within each pixel, have -{:.2f}, and at {:.0f} samples {:.2f} times as much "
+      "noise as independent ones: that is why \"exact\" and all other settings fall faster than "
+      "1/time.</p>\n",
+      other.exponent, own.exponent, most,
+      (own.rel_mse(most) - own.bias) / (other.rel_mse(most) - other.bias));
 }
 
 std::string settings_table(const CostStudy& study) {
@@ -133,71 +150,28 @@ std::string pictures(const CostStudy& study) {
 
 }  // namespace
 
-LineChart error_chart(const CostStudy& study, const CostMetric& metric) {
-  LineChart chart{.title = fmt::format("{} against time", metric.title),
-                  .x_title = fmt::format("seconds of rendering, {} threads", study.threads),
-                  .y_title = metric.title,
-                  .curves = {}};
-  for (const CostRecord& record : study.records) {
-    Curve curve{.name = record.title, .points = {}, .line = {}};
-    for (const CostPoint& point : record.points) {
-      curve.points.push_back({point.seconds, metric.of(point), point_label(record, point)});
-    }
-    if (metric.is_fitted) {
-      const double first = record.points.front().spp, ratio = record.points.back().spp / first;
-      for (int i = 0; i <= kLinePoints; ++i) {
-        const double samples = first * std::pow(ratio, double(i) / kLinePoints);
-        curve.line.push_back(
-            {record.model.seconds(samples), record.model.rel_mse(samples) + study.reference_rel_mse, ""});
-      }
-    } else {
-      curve.line = curve.points;
-    }
-    chart.curves.push_back(std::move(curve));
-  }
-  return chart;
-}
-
-BarChart effects_chart(const CostStudy& study) {
-  const double exact = study.records.front().model.per_sample;
-  BarChart chart{
-      .title = "what each effect takes of a sample's time", .unit = "% of exact", .groups = {}, .series = {}};
-  BarSeries series{.name = "saved without", .values = {}};
-  for (const CostRecord& record : study.records) {
-    if (record.knob != "without" && record.knob != "path depth") continue;
-    chart.groups.push_back(record.title);
-    series.values.push_back(std::max(0.0, 100 * (1 - record.model.per_sample / exact)));
-  }
-  chart.series.push_back(std::move(series));
-  return chart;
-}
-
 std::string cost_page(const CostStudy& study) {
   std::string html = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>What accuracy costs: {0}</title>"
       "<style>{1}</style>\n<h1>What accuracy costs: {0}</h1>\n"
-      "<p>{2} x {3} pixels on {4} threads, spectrace {5} ({6}). {7} Lines are fits: relMSE = noise &middot; "
+      "<p>{2} on {3} threads, spectrace {4} ({5}). {6} Lines are fits: relMSE = noise &middot; "
       "samples^-exponent + bias + that of the reference, seconds = start + samples &middot; time a "
       "sample.</p>\n",
-      escaped(study.scene), kStyle, study.width, study.height, study.threads, version(), commit(),
+      escaped(study.scene), kStyle, size_text(study), study.threads, version(), commit(),
       reference_text(study));
   html += "<h2>Error against time</h2>\n<p><label>metric <select id=\"metric\">";
   for (const CostMetric& metric : kCostMetrics) {
     html += fmt::format("<option value=\"{}\">{}</option>", metric.id, metric.title);
   }
   html += "</select></label></p><p id=\"told\"></p>\n";
-  for (const CostMetric& metric : kCostMetrics) {
-    html += fmt::format("<div data-metric=\"{}\"{}>{}</div>\n", metric.id,
-                        &metric == kCostMetrics.data() ? "" : " hidden", svg(error_chart(study, metric)));
+  const std::vector<CostPlot> plots = plots_of(study);
+  for (std::size_t i = 0; i < kCostMetrics.size(); ++i) {
+    html += fmt::format("<div data-metric=\"{}\"{}>{}</div>\n", plots[i].id, i == 0 ? "" : " hidden",
+                        plots[i].to_svg());
   }
   html += "<h2>Which setting to take</h2>\n" + answers_table(study);
-  html += "<p>Renders that no other beats in both: ";
-  std::string separator;
-  for (const FrontPoint& point : pareto_front(study)) {
-    html += fmt::format("{}{} at {} samples", separator, escaped(point.record->title), point.point->spp);
-    separator = ", ";
-  }
-  html += ".</p>\n<h2>All settings</h2>\n" + settings_table(study);
+  html += svg(pareto_chart(study)) + "<h2>Noise</h2>\n" + noise_text(study) + svg(noise_chart(study));
+  html += "<h2>All settings</h2>\n" + settings_table(study);
   html +=
       "<h2>Bias by lobe and wavelength</h2>\n<p>Roots of relMSE [%]. A measurement as it is has no lobes, "
       "all of it counts as specular: models move light "

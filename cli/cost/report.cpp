@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "cli/cost/page.h"
+#include "cli/cost/plots.h"
 #include "cli/cost/study_json.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -40,10 +41,10 @@ void make_report_folder(const std::filesystem::path& folder) {
 void write_cost_report(const std::filesystem::path& folder, const CostStudy& study) {
   write_file_atomically(folder / "cost.json", json_of(study));
   write_file_atomically(folder / "cost.csv", csv_of(study));
-  for (const CostMetric& metric : kCostMetrics) {
-    write_file_atomically(folder / fmt::format("{}.svg", metric.id), svg(error_chart(study, metric)));
+  for (const CostPlot& plot : plots_of(study)) {
+    write_file_atomically(folder / (plot.id + ".svg"), plot.to_svg());
+    write_png(folder / (plot.id + ".png"), plot.to_picture());
   }
-  write_file_atomically(folder / "effects.svg", svg(effects_chart(study)));
   write_file_atomically(folder / "index.html", cost_page(study));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cost study as files: index.html, cost.json, cost.csv, plots (.svg) and pictures (.png).
+// A cost study as files: index.html, cost.json, cost.csv, and each plot as .svg and .png.
 #pragma once
 
 #include <filesystem>

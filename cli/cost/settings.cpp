@@ -52,6 +52,14 @@ Setting with_wavelengths(std::size_t count) {
           }};
 }
 
+/// What the scene's own is held against: independent samples, whose noise falls as 1/samples, or stratified.
+Setting with_other_sampler(SamplerKind own) {
+  const SamplerKind other =
+      own == SamplerKind::kIndependent ? SamplerKind::kOwenSobol : SamplerKind::kIndependent;
+  return {std::string(kSamplerKnob), std::string(sampler_name(other)),
+          [other](SceneDesc& scene, Progress&) { scene.sampler = other; }};
+}
+
 Setting without(std::string_view effect) {
   return {"without", std::string(effect),
           [effect](SceneDesc& scene, Progress&) { (void)approximate(scene, effect); }};
@@ -68,6 +76,7 @@ std::string content_of(const SceneDesc& scene) {
 
 std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& separation) {
   std::vector<Setting> settings{{"exact", "exact", [](SceneDesc&, Progress&) {}}};
+  settings.push_back(with_other_sampler(scene.sampler));
   if (has_measured(scene)) {
     for (const char* model : {"residual", "diffraction", "fresnel", "sun", "analytic"}) {
       settings.push_back(with_model(model, separation));

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/scene_separation.h"
@@ -17,8 +18,11 @@ namespace spectrace::cli {
   return knob == name ? name : knob + " " + name;
 }
 
+/// Of the setting that has the other sampler than the scene.
+inline constexpr std::string_view kSamplerKnob = "sampler";
+
 struct Setting {
-  std::string knob;  ///< "exact", "model", "path depth", "wavelengths", "without"
+  std::string knob;  ///< "exact", "sampler", "model", "path depth", "wavelengths", "without"
   std::string name;  ///< of its place on the knob: "fresnel"; unique with the knob
   /// What is changed of the scene. May throw InputError, as loading does.
   std::function<void(SceneDesc&, Progress&)> apply;

@@ -41,6 +41,8 @@ std::string json_of(const CostStudy& study) {
   json.member("content", study.content);
   json.member("width", study.width);
   json.member("height", study.height);
+  json.member("scene_width", study.scene_width);
+  json.member("scene_height", study.scene_height);
   json.member("threads", study.threads);
   json.member("reference_spp", study.reference_spp);
   json.member("reference_seconds", study.reference_seconds);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grouped bars as SVG.
+// Grouped bars.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include "core/image/image.h"
 
 namespace spectrace::cli {
 
@@ -20,8 +22,7 @@ struct BarChart {
 
 /// Stands alone as a file and inside HTML; each bar tells its value where the pointer rests.
 std::string svg(const BarChart& chart);
-
-/// Text as HTML and SVG hold it: &, <, > and " escaped.
-std::string escaped(const std::string& text);
+/// The same as pixels, for what shows no SVG: R, G, B.
+Image picture(const BarChart& chart);
 
 }  // namespace spectrace::cli

@@ -4,17 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
 
-#include "cli/report/bar_chart.h"
+#include "cli/report/canvas.h"
 #include "cli/report/colours.h"
 
 namespace spectrace::cli {
 namespace {
 
 constexpr double kWidth = 560, kHeight = 380, kLeft = 70, kTop = 40, kBottom = 48, kLegend = 220;  // pixels
+constexpr double kLegendStep = 16, kTitleSize = 13;
+constexpr Stroke kGrid{"#dddddd", 1, 0};
 
 bool is_drawn(const CurvePoint& p) { return p.x > 0 && p.y > 0 && std::isfinite(p.x) && std::isfinite(p.y); }
 
@@ -67,75 +70,70 @@ class Plot {
     y_.finish();
   }
 
-  std::string text() {
-    text_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"11\">\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
-        "<text x=\"{2}\" y=\"18\" font-size=\"13\">{3}</text>\n",
-        kLeft + kWidth + kLegend, kTop + kHeight + kBottom, kLeft, escaped(chart_.title));
-    axes();
-    for (std::size_t i = 0; i < chart_.curves.size(); ++i) curve(i);
-    return text_ + "</svg>\n";
+  void draw(Canvas& canvas) const {
+    canvas.text({kLeft, 18}, chart_.title, TextAnchor::kStart, 0, kTitleSize);
+    axes(canvas);
+    for (std::size_t i = 0; i < chart_.curves.size(); ++i) curve(i, canvas);
   }
 
  private:
   [[nodiscard]] double x_of(double x) const { return kLeft + kWidth * x_.position(x); }
   [[nodiscard]] double y_of(double y) const { return kTop + kHeight * (1 - y_.position(y)); }
 
-  void axes() {
+  void axes(Canvas& canvas) const {
+    const double bottom = kTop + kHeight, right = kLeft + kWidth;
     for (const double x : x_.ticks()) {
-      text_ += fmt::format(
-          "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\" stroke=\"#dddddd\"/>"
-          "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
-          x_of(x), kTop, kTop + kHeight, kTop + kHeight + 15, x);
+      canvas.polyline(std::array{Place{x_of(x), kTop}, Place{x_of(x), bottom}}, kGrid);
+      canvas.text({x_of(x), bottom + 15}, fmt::format("{:g}", x), TextAnchor::kMiddle);
     }
     for (const double y : y_.ticks()) {
-      text_ += fmt::format(
-          "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#dddddd\"/>"
-          "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
-          kLeft, kLeft + kWidth, y_of(y), kLeft - 6, y_of(y) + 4, y);
+      canvas.polyline(std::array{Place{kLeft, y_of(y)}, Place{right, y_of(y)}}, kGrid);
+      canvas.text({kLeft - 6, y_of(y) + 4}, fmt::format("{:g}", y), TextAnchor::kEnd);
     }
-    text_ += fmt::format(
-        "<text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{2}</text>"
-        "<text x=\"14\" y=\"{3}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {3})\">{4}</text>\n",
-        kLeft + kWidth / 2, kTop + kHeight + 36, escaped(chart_.x_title), kTop + kHeight / 2,
-        escaped(chart_.y_title));
+    canvas.text({kLeft + kWidth / 2, bottom + 36}, chart_.x_title, TextAnchor::kMiddle);
+    canvas.text({14, kTop + kHeight / 2}, chart_.y_title, TextAnchor::kMiddle, -90);
   }
 
-  void curve(std::size_t i) {
+  void curve(std::size_t i, Canvas& canvas) const {
     const Curve& curve = chart_.curves[i];
     const std::string_view colour = kSeriesColours[i % kSeriesColours.size()];
     // Beyond as many curves as colours, lines are dashed.
-    const std::size_t round = i / kSeriesColours.size();
-    const std::string dash = round == 0 ? "" : fmt::format(" stroke-dasharray=\"{} 3\"", 8 / round);
-    std::string path;
+    const int round = int(i / kSeriesColours.size());
+    const int dash = round == 0 ? 0 : std::max(1, 8 / round);
+    std::vector<Place> line;
     for (const CurvePoint& p : curve.line) {
-      if (is_drawn(p)) path += fmt::format("{}{:.1f},{:.1f}", path.empty() ? "" : " ", x_of(p.x), y_of(p.y));
+      if (is_drawn(p)) line.push_back({x_of(p.x), y_of(p.y)});
     }
-    text_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{}/>\n",
-                         path, colour, dash);
+    canvas.polyline(line, {colour, 1.5, dash});
     for (const CurvePoint& p : curve.points) {
-      if (!is_drawn(p)) continue;
-      text_ += fmt::format(
-          "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\" "
-          "data-label=\"{}\"><title>{}</title></circle>\n",
-          x_of(p.x), y_of(p.y), colour, escaped(p.label), escaped(p.label));
+      if (is_drawn(p)) canvas.disk({x_of(p.x), y_of(p.y)}, 4, colour, p.label);
     }
-    const double y = kTop + 10 + 16 * double(i), x = kLeft + kWidth + 14;
-    text_ += fmt::format(
-        "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2}\" y2=\"{2}\" stroke=\"{3}\" stroke-width=\"2\"{4}/>"
-        "<text x=\"{5}\" y=\"{6}\">{7}</text>\n",
-        x, x + 24, y, colour, dash, x + 30, y + 4, escaped(curve.name));
+    const double y = kTop + 10 + kLegendStep * double(i), x = kLeft + kWidth + 14;
+    canvas.polyline(std::array{Place{x, y}, Place{x + 24, y}}, {colour, 2, dash});
+    canvas.text({x + 30, y + 4}, curve.name);
   }
 
   const LineChart& chart_;
   LogAxis x_, y_;
-  std::string text_;
 };
+
+/// The legend may be longer than the plot is high.
+double height_of(const LineChart& chart) {
+  return kTop + std::max(kHeight + kBottom, 10 + kLegendStep * double(chart.curves.size() + 1));
+}
 
 }  // namespace
 
-std::string svg(const LineChart& chart) { return Plot(chart).text(); }
+std::string svg(const LineChart& chart) {
+  SvgCanvas canvas(kLeft + kWidth + kLegend, height_of(chart));
+  Plot(chart).draw(canvas);
+  return canvas.document();
+}
+
+Image picture(const LineChart& chart) {
+  PixelCanvas canvas(kLeft + kWidth + kLegend, height_of(chart));
+  Plot(chart).draw(canvas);
+  return canvas.image();
+}
 
 }  // namespace spectrace::cli

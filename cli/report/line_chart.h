@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curves over two logarithmic axes as SVG.
+// Curves over two logarithmic axes.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include "core/image/image.h"
 
 namespace spectrace::cli {
 
@@ -25,5 +27,7 @@ struct LineChart {
 
 /// Stands alone as a file and inside HTML.
 std::string svg(const LineChart& chart);
+/// The same as pixels, for what shows no SVG: R, G, B.
+Image picture(const LineChart& chart);
 
 }  // namespace spectrace::cli

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "cli/report/canvas.h"
 #include "core/base/version.h"
 #include "core/image/image.h"
 

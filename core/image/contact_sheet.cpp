@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image/contact_sheet.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -47,36 +42,23 @@ Layout make_layout(std::span<const SheetItem> items, int columns) {
   return layout;
 }
 
-/// OpenImageIO 2.4 draws wrong glyphs for anything beyond ASCII: better a '?' than another text.
-std::string drawable(std::string_view text) {
-  std::string ascii;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x80 && byte < 0xC0) continue;  // the rest of a UTF-8 character
-    ascii += byte >= 0x20 && byte < 0x7f ? c : '?';
-  }
-  return ascii;
-}
-
 /// One channel of ink coverage, or nothing where text cannot be drawn.
 std::optional<std::vector<float>> draw_caption(const std::string& caption, int width,
-                                               const std::string& font) {
-  OIIO::ImageBuf buffer(OIIO::ImageSpec(width, kCaptionHeight, 1, OIIO::TypeDesc::FLOAT));
-  if (!OIIO::ImageBufAlgo::zero(buffer)) return std::nullopt;
-  int size = kFontSize;
-  const OIIO::ROI extent = OIIO::ImageBufAlgo::text_size(caption, size, font);
-  if (!extent.defined() && !caption.empty()) return std::nullopt;
-  if (!caption.empty() && extent.width() > width) {
-    size = std::max(kSmallestFontSize, size * width / extent.width());
+                                               const std::filesystem::path& font) {
+  auto ink = text_coverage(caption, kFontSize, font);
+  if (ink && ink->width > width) {
+    ink = text_coverage(caption, std::max(kSmallestFontSize, kFontSize * width / ink->width), font);
   }
-  constexpr float kFullCoverage[] = {1.0f};
-  const bool is_drawn = OIIO::ImageBufAlgo::render_text(
-      buffer, width / 2, kCaptionHeight / 2, caption, size, font, kFullCoverage,
-      OIIO::ImageBufAlgo::TextAlignX::Center, OIIO::ImageBufAlgo::TextAlignY::Center);
+  if (!ink) return std::nullopt;
   std::vector<float> coverage(std::size_t(width) * kCaptionHeight);
-  if (!is_drawn || !buffer.get_pixels(buffer.roi(), OIIO::TypeDesc::FLOAT, coverage.data())) {
-    static_cast<void>(buffer.geterror());  // fetched, or OpenImageIO prints it
-    return std::nullopt;
+  const int left = (width - ink->width) / 2, top = (kCaptionHeight - ink->height) / 2;
+  for (int y = 0; y < ink->height; ++y) {
+    for (int x = 0; x < ink->width; ++x) {
+      const int at_x = left + x, at_y = top + y;
+      if (at_x < 0 || at_x >= width || at_y < 0 || at_y >= kCaptionHeight) continue;
+      coverage[std::size_t(at_y) * std::size_t(width) + std::size_t(at_x)] =
+          ink->data[std::size_t(y) * std::size_t(ink->width) + std::size_t(x)];
+    }
   }
   return coverage;
 }
@@ -101,17 +83,6 @@ void copy_image(Image& sheet, const Image& image, int left, int top) {
 
 }  // namespace
 
-std::optional<std::filesystem::path> find_caption_font() {
-  // Debian and Ubuntu; Fedora; Arch.
-  for (const char* file :
-       {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-        "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf"}) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(file, ignored)) return file;
-  }
-  return std::nullopt;
-}
-
 ContactSheet make_contact_sheet(std::span<const SheetItem> items, int columns,
                                 const std::optional<std::filesystem::path>& font) {
   SPECTRACE_CHECK(!items.empty());
@@ -121,7 +92,7 @@ ContactSheet make_contact_sheet(std::span<const SheetItem> items, int columns,
   for (const SheetItem& item : items) {
     SPECTRACE_CHECK(item.rgb.channels.size() == 3 && item.rgb.width > 0 && item.rgb.height > 0);
     if (!font) break;
-    auto coverage = draw_caption(drawable(item.caption), layout.cell_width, font->string());
+    auto coverage = draw_caption(item.caption, layout.cell_width, *font);
     if (!coverage) break;
     captions.push_back(std::move(*coverage));
   }

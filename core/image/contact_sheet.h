@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/image/image.h"
+#include "core/image/text_coverage.h"
 
 namespace spectrace {
 
@@ -20,9 +21,6 @@ struct ContactSheet {
   Image image;  ///< R, G, B, linear
   bool has_captions = false;
 };
-
-/// A font that distributions install (package fonts-dejavu-core on Debian); nothing where none is found.
-std::optional<std::filesystem::path> find_caption_font();
 
 /// At least one item, row by row in `columns` columns (0: as near to a square as it gets); each cell as large
 /// as the largest image, images in its middle. Without a font, or where OpenImageIO was built without

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // `spectrace cost`: what is said of settings whose bias is known.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "core/base/json.h"
+#include "core/image/image.h"
 #include "tests/cli/program.h"
 
 namespace spectrace::test {
@@ -51,9 +53,17 @@ TEST_F(Cost, TellsTheBiasOfWhatIsLeftOut) {
 TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
   write_lambert_scene("ball.json");
   ASSERT_EQ(run({"cost", "ball.json", "-o", "report", "--budget", "3"}).exit_code, 0);
-  for (const char* file :
-       {"cost.csv", "cost.json", "effects.svg", "ciede2000.svg", "mape.svg", "psnr_db.svg", "rel_mse.svg"}) {
+  for (const char* file : {"cost.csv", "cost.json", "effects.svg", "ciede2000.svg", "mape.svg", "psnr_db.svg",
+                           "rel_mse.svg", "pareto.svg", "noise.svg"}) {
     EXPECT_FALSE(read_text(folder_ / "report" / file).empty()) << file;
+  }
+  for (const char* plot : {"effects.png", "ciede2000.png", "mape.png", "psnr_db.png", "rel_mse.png",
+                           "pareto.png", "noise.png"}) {
+    const Image image = read_image(folder_ / "report" / plot);
+    // White paper, and something on it.
+    EXPECT_NEAR(image.at(image.width - 1, image.height - 1, 0), 1, 1e-3) << plot;
+    EXPECT_GT(std::count_if(image.data.begin(), image.data.end(), [](float v) { return v < 0.5F; }), 500)
+        << plot;
   }
   const std::string page = read_text(folder_ / "report" / "index.html");
   for (const char* outside : {"src=\"http", "href=", "<link", "url("}) {
