@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `spectrace cost` says of a ball whose colour shifts with the angle: laws that noise and bias must obey.
+// With fixed samples instead of a budget: the same on every machine.
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <regex>
+#include <vector>
+
+#include "core/image/error_model.h"
+#include "core/image/metrics.h"
+#include "tests/cli/program.h"
+
+namespace spectrace::test {
+namespace {
+
+using Options = std::vector<std::string>;
+
+/// scenes/material_ball.json at 48 x 48 pixels.
+class CostFigures : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_.emplace();
+    std::filesystem::create_directory(folder_->path() / "demo-out");
+    std::filesystem::create_directory(folder_->path() / "scenes");
+    const std::string text = read_text(kScenes / "material_ball.json");
+    write_text(folder_->path() / "scenes/ball.json", std::regex_replace(text, std::regex("256"), "48"));
+    const ProgramResult acquired = run_spectrace(
+        {"acquire", (kScenes / "materials/pearlescent.json").string(), "-o", "demo-out/pearlescent.bsdf"},
+        folder_->path());
+    ASSERT_EQ(acquired.exit_code, 0) << acquired.errors;
+    first_ = beauty(kReferenceSpp / 2, 1000, {});
+    second_ = beauty(kReferenceSpp / 2, 1001, {});
+    mean_ = first_;
+    double sum = 0;
+    for (std::size_t i = 0; i < mean_.data.size(); ++i) {
+      mean_.data[i] = (first_.data[i] + second_.data[i]) / 2;
+      sum += double(mean_.data[i]) / double(mean_.data.size());
+    }
+    epsilon_ = kRelativeEpsilon * sum * sum;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static Image beauty(int spp, std::uint64_t seed, const Options& options) {
+    Options arguments{"scenes/ball.json",
+                      "-o",
+                      "out.exr",
+                      "--spp",
+                      std::to_string(spp),
+                      "--seed",
+                      std::to_string(seed),
+                      "--grid",
+                      "45x45x90",
+                      "--cache",
+                      "cache"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = run_spectrace(arguments, folder_->path());
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const std::array<std::string, 3> rgb{"R", "G", "B"};
+    return read_image(folder_->path() / "out.exr").select(rgb, "out.exr");
+  }
+  static double rel_mse(int spp, std::uint64_t seed, const Options& options) {
+    return compare_images(mean_, beauty(spp, seed, options), {.epsilon = epsilon_}).rel_mse;
+  }
+  static double known() { return noise_rel_mse({first_, second_}, epsilon_).value; }
+  static Estimate bias(const Options& options) {
+    return bias_rel_mse({beauty(128, 20, options), beauty(128, 21, options)}, {first_, second_}, epsilon_);
+  }
+  /// As `cost` fits it.
+  static ErrorModel fit(const Options& options) {
+    std::vector<ErrorPoint> ladder;
+    for (const int spp : {8, 16, 32, 64}) {
+      ladder.push_back({double(spp), 1, rel_mse(spp, std::uint64_t(spp), options)});
+    }
+    return fit_error_model(ladder, bias(options).value, known());
+  }
+
+ private:
+  static constexpr int kReferenceSpp = 1024;
+  static inline std::optional<TemporaryFolder> folder_;
+  static inline Image first_, second_, mean_;
+  static inline double epsilon_ = 0;
+};
+
+const Options kIndependent{"--sampler", "independent"};
+
+TEST_F(CostFigures, NoiseOfIndependentSamplesFallsAsOneOverTime) {
+  constexpr double kSlopeTolerance = 0.1;  // the law is exact; what is left is the ladder's own noise
+  const ErrorModel independent = fit(kIndependent), own = fit({});
+  EXPECT_NEAR(independent.exponent, 1, kSlopeTolerance);
+  EXPECT_GT(own.exponent, 1 + kSlopeTolerance) << "stratified samples";
+  EXPECT_LT(own.rel_mse(64), independent.rel_mse(64));
+}
+
+TEST_F(CostFigures, BiasOfOneColourExceedsThatOfColoursByAngle) {
+  const Estimate sun = bias({"--separate", "sun"});
+  // 4 standard errors: significance 6e-5.
+  for (const char* model : {"fresnel", "diffraction", "residual"}) {
+    const Estimate other = bias({"--separate", model});
+    EXPECT_GT(sun.value, other.value + 4 * std::hypot(sun.standard_error, other.standard_error)) << model;
+  }
+  for (const Options& raw : {Options{}, kIndependent}) {
+    const Estimate none = bias(raw);
+    EXPECT_NEAR(none.value, 0, 4 * none.standard_error);
+  }
+}
+
+}  // namespace
+}  // namespace spectrace::test
