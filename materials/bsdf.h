@@ -65,11 +65,20 @@ struct BsdfRandom {
   Vec2 direction;
 };
 
+/// What a vertex of a path asks of its material.
+struct Scattering {
+  BsdfValue towards_light;         ///< 0 where no light was asked for
+  std::optional<BsdfSample> next;  ///< where the path goes
+};
+
 /// Immutable and shared between threads.
 /// - evaluate: value and density together, since they share their table lookups. Both 0 where wi or wo lies
 ///   in the horizon plane, or, for reflecting lobes, where they lie on different sides.
 /// - sample: nullopt where no light leaves or the drawn direction is invalid.
 /// - evaluate_lobes: the same value, by lobe.
+/// - scatter, where there is one: evaluate() towards *light (nullptr: nothing) and sample(), the same bits,
+/// for
+///   materials that share work between the two.
 /// - is_delta: every lobe is a delta distribution, evaluate() is always 0.
 /// - kOnlyLobe, where there is one: all that is reflected is of this lobe.
 /// Reflecting materials are one-sided: both directions must have z > 0. The caller flips frames for

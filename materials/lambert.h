@@ -14,6 +14,9 @@ struct Lambert {
   [[nodiscard]] BsdfValue evaluate(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] LobeValues evaluate_lobes(Vec3 wo, Vec3 wi, const ShadingPoint& at) const;
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
+  /// Looks the reflectance up once for both.
+  [[nodiscard]] Scattering scatter(Vec3 wo, const Vec3* light, const BsdfRandom& u,
+                                   const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
   /// Share of light that the diffuse lobe sends to wo from all around.
   [[nodiscard]] SampledSpectrum diffuse_albedo(Vec3, const ShadingPoint& at) const {

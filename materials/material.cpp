@@ -36,6 +36,23 @@ std::optional<BsdfSample> sample(const Material& material, Vec3 wo, const BsdfRa
   return drawn;
 }
 
+Scattering scatter(const Material& material, Vec3 wo, const std::optional<Vec3>& light, const BsdfRandom& u,
+                   const ShadingPoint& at) {
+  if (is_in_horizon(wo)) return {};
+  const Vec3* const towards = light && !is_in_horizon(*light) ? &*light : nullptr;
+  Scattering result = std::visit(
+      [&](const auto& m) -> Scattering {
+        if constexpr (requires { m.scatter(wo, towards, u, at); }) {
+          return m.scatter(wo, towards, u, at);
+        } else {
+          return {towards != nullptr ? m.evaluate(wo, *towards, at) : BsdfValue{}, m.sample(wo, u, at)};
+        }
+      },
+      material);
+  if (result.next && is_in_horizon(result.next->wi)) result.next.reset();
+  return result;
+}
+
 bool is_delta(const Material& material) {
   return std::visit([](const auto& m) { return m.is_delta(); }, material);
 }

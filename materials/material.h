@@ -48,6 +48,10 @@ void for_each_part(const Material& material, const std::function<void(const Mate
 [[nodiscard]] LobeValues evaluate_lobes(const Material& material, Vec3 wo, Vec3 wi, const ShadingPoint& at);
 [[nodiscard]] std::optional<BsdfSample> sample(const Material& material, Vec3 wo, const BsdfRandom& u,
                                                const ShadingPoint& at);
+/// evaluate() towards `light`, where there is one, and sample(): the same bits. A material that shares work
+/// between the two has a member of this name.
+[[nodiscard]] Scattering scatter(const Material& material, Vec3 wo, const std::optional<Vec3>& light,
+                                 const BsdfRandom& u, const ShadingPoint& at);
 [[nodiscard]] bool is_delta(const Material& material);
 /// Lobe that has all the light, if every direction tells the same: no need to ask evaluate_lobes().
 [[nodiscard]] std::optional<Lobe> only_lobe(const Material& material);

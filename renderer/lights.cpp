@@ -220,15 +220,6 @@ double Lights::power(double lambda_nm) const {
   return sum;
 }
 
-std::optional<LightSample> Lights::sample_area(std::uint32_t light, Vec3 from, Vec2 u,
-                                               const SampledWavelengths& lambda) const {
-  const std::optional<LightPoint> point = sample_light(area_[light].shape, from, u);
-  if (!point) {
-    return std::nullopt;
-  }
-  return LightSample{point->wi, point->position, emission(light, lambda), point->pdf};
-}
-
 std::optional<LightSample> Lights::sample_delta(std::uint32_t light, Vec3 from,
                                                 const SampledWavelengths& lambda) const {
   return std::visit([&](const auto& delta) { return sample_one(delta, from, lambda); },

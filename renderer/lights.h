@@ -88,14 +88,16 @@ class Lights {
   [[nodiscard]] bool is_environment(std::uint32_t light) const {
     return environment_ && light == environment_index();
   }
-  [[nodiscard]] std::optional<LightSample> sample_area(std::uint32_t light, Vec3 from, Vec2 u,
-                                                       const SampledWavelengths& lambda) const;
+  [[nodiscard]] std::optional<LightPoint> sample_area(std::uint32_t light, Vec3 from, Vec2 u) const {
+    return sample_light(area_[light].shape, from, u);
+  }
   [[nodiscard]] std::optional<LightSample> sample_delta(std::uint32_t light, Vec3 from,
                                                         const SampledWavelengths& lambda) const;
   [[nodiscard]] std::optional<LightSample> sample_environment(Vec2 u, const SampledWavelengths& lambda) const;
 
-  [[nodiscard]] SampledSpectrum emission(std::uint32_t area_light, const SampledWavelengths& lambda) const {
-    return emissions_[area_[area_light].emission].sample(lambda);
+  /// Radiance of an area light's front; many lights may share one.
+  [[nodiscard]] const Spectrum& emission(std::uint32_t area_light) const {
+    return emissions_[area_[area_light].emission];
   }
   [[nodiscard]] const LightShape& shape(std::uint32_t area_light) const { return area_[area_light].shape; }
   [[nodiscard]] const std::optional<Environment>& environment() const { return environment_; }

@@ -125,8 +125,18 @@ class PathTracer {
                                     point.position, point.normal_g);
         weight = bsdf_mis_weight(pdf * scene_.lights.probability(point.light, last_receiver_));
       }
-      add<Layer::kEmission>(beta_ * scene_.lights.emission(point.light, lambda_) * weight);
+      add<Layer::kEmission>(beta_ * emission(point.light) * weight);
     }
+  }
+
+  /// Radiance of an area light. Most paths meet the same one at each of their vertices.
+  [[nodiscard]] const SampledSpectrum& emission(std::uint32_t area_light) {
+    const Spectrum& spectrum = scene_.lights.emission(area_light);
+    if (emission_of_ != &spectrum) {
+      emission_of_ = &spectrum;
+      emission_ = spectrum.sample(lambda_);
+    }
+    return emission_;
   }
 
   /// Radiance that goes to the first non-delta hit's lobes in its shares; seen without one, to `kDirect`
@@ -175,28 +185,39 @@ class PathTracer {
             sampler_.vertex(vertex_)};
   }
 
-  void sample_lights(const Vertex& vertex) {
+  /// Light that may come to a vertex from a source chosen for it.
+  struct Incident {
+    LightSample light;
+    Vec3 wi;  // local
+    Float pdf = 0;
+    bool is_delta_light = false;
+  };
+  [[nodiscard]] std::optional<Incident> sample_lights(const Vertex& vertex) {
     const std::optional<Lights::Choice> choice =
         scene_.lights.choose(vertex.receiver(), vertex.numbers.light_choice);
-    if (!choice) return;
+    if (!choice) return std::nullopt;
     bool is_delta_light = true;
     const std::optional<LightSample> light = sample_light_source(vertex, choice->light, is_delta_light);
-    if (!light) return;
+    if (!light || light->radiance.is_zero()) return std::nullopt;
     const Vec3 wi = vertex.frame.to_local(light->wi);
-    if (!vertex.sides_agree(light->wi, wi)) return;
-    const BsdfValue bsdf = evaluate(vertex.material, vertex.wo, wi, vertex.at);
-    if (bsdf.value_cos.is_zero() || light->radiance.is_zero()) return;
+    if (!vertex.sides_agree(light->wi, wi)) return std::nullopt;
     const Float pdf = light->pdf * choice->probability;
-    if (!(pdf > 0)) return;  // a density Float cannot hold: BSDF sampling carries it alone
-    const Float weight = is_delta_light ? Float(1) : power_heuristic(pdf, bsdf.pdf);
-    awaited_ = beta_ * bsdf.value_cos * light->radiance * (weight / pdf);
+    if (!(pdf > 0)) return std::nullopt;  // a density Float cannot hold: BSDF sampling carries it alone
+    return Incident{*light, wi, pdf, is_delta_light};
+  }
+
+  void await_light(const Vertex& vertex, const Incident& incident, const BsdfValue& bsdf) {
+    if (bsdf.value_cos.is_zero()) return;
+    const LightSample& light = incident.light;
+    const Float weight = incident.is_delta_light ? Float(1) : power_heuristic(incident.pdf, bsdf.pdf);
+    awaited_ = beta_ * bsdf.value_cos * light.radiance * (weight / incident.pdf);
     if constexpr (kFeatures.lobe_layers) {
-      awaited_lobes_ = {split_.is_made ? split_.share : shares(vertex, wi), !split_.is_made};
+      awaited_lobes_ = {split_.is_made ? split_.share : shares(vertex, incident.wi), !split_.is_made};
     }
-    const Ray ray = light->shadow_ray(ray_origin(vertex.point, light->wi));
+    const Ray ray = light.shadow_ray(ray_origin(vertex.point, light.wi));
     if constexpr (kFeatures.nested) {
       if (scene_.has_holes) {
-        const Float visible = visibility_through_holes(ray, *light);
+        const Float visible = visibility_through_holes(ray, light);
         if (visible > 0) {
           awaited_ *= visible;
           receive_light();
@@ -213,12 +234,14 @@ class PathTracer {
   }
 
   [[nodiscard]] std::optional<LightSample> sample_light_source(const Vertex& vertex, std::uint32_t light,
-                                                               bool& is_delta_light) const {
+                                                               bool& is_delta_light) {
     [[maybe_unused]] const Vec2 u = vertex.numbers.light;
     if constexpr (kFeatures.area_lights) {
       if (scene_.lights.is_area(light)) {
         is_delta_light = false;
-        return scene_.lights.sample_area(light, vertex.point.position, u, lambda_);
+        const std::optional<LightPoint> point = scene_.lights.sample_area(light, vertex.point.position, u);
+        if (!point) return std::nullopt;
+        return LightSample{point->wi, point->position, emission(light), point->pdf};
       }
     }
     if constexpr (kFeatures.environment) {
@@ -255,7 +278,7 @@ class PathTracer {
   }
 
   [[nodiscard]] std::optional<BsdfSample> sample_vertex(const Vertex& vertex) const {
-    return sample(vertex.material, vertex.wo, {vertex.numbers.lobe, vertex.numbers.bsdf}, vertex.at);
+    return sample(vertex.material, vertex.wo, vertex.bsdf_numbers(), vertex.at);
   }
 
   bool go_straight_on(const Vertex& vertex, const BsdfSample& through) {
@@ -307,9 +330,14 @@ class PathTracer {
     }
     bool only_delta = false;
     if constexpr (kFeatures.delta_lobes) only_delta = is_delta(vertex.material);
-    if (!only_delta && scene_.integrator.next_event) sample_lights(vertex);
+    std::optional<Incident> incident;
+    if (!only_delta && scene_.integrator.next_event) incident = sample_lights(vertex);
+    const Scattering scattered =
+        spectrace::scatter(vertex.material, vertex.wo, incident ? std::optional(incident->wi) : std::nullopt,
+                           vertex.bsdf_numbers(), vertex.at);
+    if (incident) await_light(vertex, *incident, scattered.towards_light);
 
-    const std::optional<BsdfSample> s = sample_vertex(vertex);
+    const std::optional<BsdfSample>& s = scattered.next;
     const bool passes = kFeatures.nested && s && s->passes;
     if (!passes && wants_first_hit()) look_at(vertex);
     if (!s || s->weight.is_zero()) return false;
@@ -379,6 +407,8 @@ class PathTracer {
   RayCone cone_;         // where ray_ begins; 0 unless some texture is an image
   Footprint footprint_;  // at the vertex at hand
   std::optional<Ray> shadow_ray_;
+  const Spectrum* emission_of_ = nullptr;  // whose emission_ is, at these wavelengths
+  SampledSpectrum emission_;
   SampledSpectrum awaited_;      // light that arrives unless something lies between
   bool terminate_next_ = false;  // once the light of this vertex has arrived
   std::uint32_t vertex_ = 0;     // surfaces met: what random numbers are named after

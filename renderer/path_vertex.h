@@ -43,6 +43,8 @@ struct PathVertex {
     return (dot(wi_world, point.normal_g) > 0) == (wi_local.z > 0);
   }
 
+  [[nodiscard]] BsdfRandom bsdf_numbers() const { return {numbers.lobe, numbers.bsdf}; }
+
   /// What lights are chosen for: the same for the choice and for the weight of light met by chance.
   [[nodiscard]] Receiver receiver() const {
     Receiver receiver{point.position, frame.n};

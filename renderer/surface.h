@@ -35,9 +35,16 @@ inline constexpr Float kFloatRounding = Float(0x1p-24);  // Embree computes in f
 
 namespace detail {
 
+/// Squared lengths between this and its inverse are far from the ends of what a float holds: nothing that
+/// went into them has been lost below.
+inline constexpr Float kSafeSquare = Float(1e-20);
+
 /// normalize() for vectors whose squared length would underflow or overflow.
 inline Vec3 normalize_any(Vec3 v) { return normalize(v / max_abs(v)); }
 inline Vec3 triangle_normal(Vec3 edge_1, Vec3 edge_2) {
+  const Vec3 n = cross(edge_1, edge_2);
+  const Float l2 = length_squared(n);
+  if (l2 > kSafeSquare && l2 < 1 / kSafeSquare) return n / std::sqrt(l2);
   return normalize_any(cross(edge_1 / max_abs(edge_1), edge_2 / max_abs(edge_2)));
 }
 

@@ -2,6 +2,7 @@
 #include "core/spectra/lane_to_xyz.h"
 
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "core/base/wide.h"
@@ -13,6 +14,9 @@ namespace spectrace {
 namespace {
 
 using Weights = std::array<Float, 4>;
+/// The same in one register: GCC 12 makes none of a loop over weights that may overlap with what they are
+/// made from.
+using Four = Float __attribute__((vector_size(sizeof(Weights))));
 
 /// The observer's curves over ∫ȳ side by side, in the light path's own type.
 class Bars {
@@ -24,18 +28,24 @@ class Bars {
     }
     nodes_.back() = nodes_[kCieSamples - 1];
   }
-  /// Linear between nodes, 0 outside, as cie_xyz_bar(); times `factor`.
-  [[nodiscard]] Weights at(Float lambda_nm, Float factor) const {
-    const Float position = lambda_nm - kCieMinNm;
-    const Float inside = clamped(position, Float(0), Float(kCieSamples - 1));
-    const auto i = static_cast<std::int32_t>(inside);
-    const Float t = inside - Float(i), scale = inside == position ? factor : Float(0);
-    const Float* const a = nodes_[static_cast<std::size_t>(i)].data();
-    const Float* const b = a + Weights().size();
-    Weights xyz;
-    Float* const out = xyz.data();
-    for (std::size_t c = 0; c < xyz.size(); ++c) out[c] = (a[c] + t * (b[c] - a[c])) * scale;
-    return xyz;
+  /// Linear between nodes, 0 outside, as cie_xyz_bar(); times `factor`, one a lane.
+  void at(const SampledSpectrum& lambda_nm, const SampledSpectrum& factor,
+          std::array<Weights, kLanes>& weights) const {
+    const auto inside = SampledSpectrum::by_lane(
+        [](Float nm) { return clamped(nm - kCieMinNm, Float(0), Float(kCieSamples - 1)); }, lambda_nm);
+    const auto scale = SampledSpectrum::by_lane(
+        [](Float nm, Float place, Float f) { return place == nm - kCieMinNm ? f : Float(0); }, lambda_nm,
+        inside, factor);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto i = static_cast<std::int32_t>(inside[lane]);
+      const Float t = inside[lane] - Float(i);
+      const Weights* const node = &nodes_[static_cast<std::size_t>(i)];
+      Four a, b;
+      std::memcpy(&a, node, sizeof(a));
+      std::memcpy(&b, node + 1, sizeof(b));
+      const Four weight = (a + t * (b - a)) * scale[lane];
+      std::memcpy(&weights[static_cast<std::size_t>(lane)], &weight, sizeof(weight));
+    }
   }
 
  private:
@@ -52,12 +62,16 @@ const Bars& bars() {
 LaneToXyz::LaneToXyz(const SampledWavelengths& lambda) { weigh(lambda); }
 
 SPECTRACE_WIDE void LaneToXyz::weigh(const SampledWavelengths& lambda) {
-  const Bars& observer = bars();
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const Float pdf = lambda.pdf_per_nm(int(lane));
-    counts_[lane] = pdf > 0 ? 1 : 0;
-    weights_[lane] = observer.at(lambda.lambda_nm(int(lane)), pdf > 0 ? 1 / (pdf * kLanes) : Float(0));
+  SampledSpectrum nm, factor;
+  Float* const nm_of = nm.v.data();
+  Float* const factor_of = factor.v.data();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Float pdf = lambda.pdf_per_nm(lane);
+    counts_[std::size_t(lane)] = pdf > 0 ? 1 : 0;
+    nm_of[lane] = lambda.lambda_nm(lane);
+    factor_of[lane] = pdf > 0 ? 1 / (pdf * kLanes) : Float(0);
   }
+  bars().at(nm, factor, weights_);
 }
 
 SPECTRACE_WIDE bool LaneToXyz::add(const LaneSums& radiance, PathXyz& xyz, bool may_be_negative) const {

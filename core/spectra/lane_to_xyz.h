@@ -50,7 +50,7 @@ class LaneToXyz {
  private:
   void weigh(const SampledWavelengths& lambda);
 
-  alignas(4 * sizeof(Float)) std::array<std::array<Float, 4>, kLanes> weights_{};
+  alignas(kLaneAlignment) std::array<std::array<Float, 4>, kLanes> weights_{};
   std::array<std::int32_t, kLanes> counts_{};
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 
 #include "core/base/float.h"
@@ -12,7 +13,11 @@ namespace spectrace {
 /// Wavelengths a path carries: the one switch (ADR 0004).
 inline constexpr int kLanes = 8;
 
-struct alignas(kLanes * sizeof(Float)) SampledSpectrum {
+/// Bytes. No more than the stack's own: in functions built for SSE2, GCC 12 has given the result of a call
+/// less than the 32 that its type asked for, and a callee built for AVX2 relied on them.
+inline constexpr std::size_t kLaneAlignment = 16;
+
+struct alignas(kLaneAlignment) SampledSpectrum {
   std::array<Float, kLanes> v{};
 
   constexpr SampledSpectrum() = default;

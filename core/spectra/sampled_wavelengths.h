@@ -47,7 +47,7 @@ class SampledWavelengths {
   void terminate_secondary();
 
  private:
-  alignas(kLanes * sizeof(Float)) std::array<Float, kLanes> lambda_nm_{};
+  alignas(kLaneAlignment) std::array<Float, kLanes> lambda_nm_{};
   std::array<Float, kLanes> pdf_per_nm_{};
 };
 

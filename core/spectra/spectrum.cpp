@@ -32,6 +32,19 @@ class WhiteD65 {
     const auto k = static_cast<std::size_t>(i);
     return nodes_[k] + (position - Float(i)) * (nodes_[k + 1] - nodes_[k]);
   }
+  /// The same of all lanes: all but the fetching is work of whole registers.
+  [[nodiscard]] SampledSpectrum sample(const SampledWavelengths& lambda) const {
+    const SampledSpectrum position = lambda.map(
+        [](Float nm) { return clamped((nm - kD65MinNm) * (Float(1) / kD65StepNm), Float(0), kLast); });
+    SampledSpectrum whole, below, above;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto i = static_cast<std::int32_t>(position[lane]);
+      whole[lane] = Float(i);
+      below[lane] = nodes_[static_cast<std::size_t>(i)];
+      above[lane] = nodes_[static_cast<std::size_t>(i) + 1];
+    }
+    return below + (position - whole) * (above - below);
+  }
 
  private:
   static constexpr auto kLast = Float(kD65Samples - 1);
@@ -121,8 +134,8 @@ Float RgbIlluminantSpectrum::at(Float lambda_nm) const {
 }
 
 SPECTRACE_WIDE SampledSpectrum RgbIlluminantSpectrum::sample(const SampledWavelengths& lambda) const {
-  const WhiteD65& white = WhiteD65::table();
-  return lambda.map([s = sigmoid, &white](Float nm) { return s.at(nm) * white.at(nm); });
+  const SampledSpectrum colour = lambda.map([s = sigmoid](Float nm) { return s.at(nm); });
+  return colour * WhiteD65::table().sample(lambda);
 }
 
 Float SellmeierSpectrum::at(Float lambda_nm) const {

@@ -43,6 +43,34 @@ double relative_difference(double a, double b) {
 
 bool is_valid(const SampledSpectrum& s) { return s.is_finite() && s.min() >= 0; }
 
+/// The same bits, whichever way a vertex asks.
+TEST_P(EveryBsdfContract, ScatteringIsEvaluationAndSample) {
+  constexpr int kVertices = 2000;
+  TestRandom random(seed_of(GetParam().name));
+  int drawn = 0;
+  for (const auto& [theta_deg, side] : incidences()) {
+    const Vec3 wo = on_side(direction(theta_deg, kAzimuthRad), side);
+    for (int i = 0; i < kVertices; ++i) {
+      const BsdfRandom u = random_numbers(random);
+      const std::optional<BsdfSample> next = sample(material(), wo, u, at());
+      // Towards where the lobe is: somewhere in the hemisphere a narrow one is 0 both ways.
+      const std::optional<Vec3> light = next ? std::optional(next->wi) : std::nullopt;
+      const Scattering both = scatter(material(), wo, light, u, at());
+      const BsdfValue value = light ? evaluate(material(), wo, *light, at()) : BsdfValue{};
+      ASSERT_EQ(both.towards_light.value_cos, value.value_cos);
+      ASSERT_EQ(both.towards_light.pdf, value.pdf);
+      ASSERT_EQ(both.next.has_value(), next.has_value());
+      if (!next) continue;
+      ASSERT_EQ(both.next->wi, next->wi);
+      ASSERT_EQ(both.next->weight, next->weight);
+      ASSERT_EQ(both.next->pdf, next->pdf);
+      ASSERT_EQ(both.next->is_delta, next->is_delta);
+      ++drawn;
+    }
+  }
+  EXPECT_GT(drawn, kVertices);
+}
+
 TEST_P(EveryBsdfContract, WeightIsValueOverDensity) {
   // A narrow lobe turns the rounding of the direction that is evaluated again into up to this much at one
   // angle of incidence (2.2e-4 was seen, on a paint); over all angles the contract's own bound holds.

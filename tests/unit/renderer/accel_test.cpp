@@ -60,6 +60,27 @@ Geometry one_of_each_kind() {
   return geometry;
 }
 
+/// Embree is given two triangles of each: what comes back is the quad's own u and v on either.
+TEST(Accel, QuadsAreOnePrimitiveWithTheirOwnCoordinates) {
+  const Quad quad{{1, 2, 3}, {4, 0, 1}, {0, 3, 0}};
+  Geometry geometry;
+  geometry.shapes = {Shape{.geometry = quad}};
+  geometry.top = {0, 1};
+  const Accel accel(geometry);
+  constexpr int kSteps = 16;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const Float u = (Float(i) + Float(0.5)) / kSteps, v = (Float(j) + Float(0.25)) / kSteps;
+      const Vec3 point = quad.corner + quad.edge_u * u + quad.edge_v * v;
+      const auto hit = accel.intersect(Ray{point + Vec3{0, 0, 5}, {0, 0, -1}});
+      ASSERT_TRUE(hit.has_value()) << u << ' ' << v;
+      EXPECT_EQ(hit->primitive, 0U);
+      EXPECT_NEAR(hit->u, u, 1e-6);
+      EXPECT_NEAR(hit->v, v, 1e-6);
+    }
+  }
+}
+
 TEST(Accel, PacketsFindWhatSingleRaysFind) {
   const Geometry geometry = one_of_each_kind();
   const Accel accel(geometry);
