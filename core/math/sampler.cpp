@@ -55,11 +55,9 @@ constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t key) {
   return x;
 }
 
-/// The top bits that a Float holds exactly: never rounds up to 1.
-constexpr Float to_unit(std::uint32_t bits) {
-  if constexpr (sizeof(Float) == 4) return Float(std::int32_t(bits >> 8)) * Float(0x1p-24);
-  return Float(bits) * Float(0x1p-32);
-}
+/// The top bits that a float holds exactly: never rounds up to 1. The same numbers in double precision, so that
+/// images of both builds differ by rounding alone.
+constexpr Float to_unit(std::uint32_t bits) { return Float(std::int32_t(bits >> 8)) * Float(0x1p-24); }
 
 constexpr std::size_t kBlock = Sampler::kBlock;
 using Words = std::array<std::uint32_t, kBlock>;
