@@ -224,7 +224,7 @@ class Quadrature {
   }
 
   static std::vector<double> breakpoints(double low, double box_low, double box_high, double high) {
-    const double width = std::max(box_high - box_low, 1e-3 * (high - low));
+    const double width = std::max(box_high - box_low, 1e-7 * (high - low));
     std::vector<double> points;
     for (double step = width, x = box_low - step / 4; x > low; x -= step, step *= 2) points.push_back(x);
     points.push_back(low);

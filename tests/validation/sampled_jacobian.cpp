@@ -75,6 +75,8 @@ std::optional<LobeDensity> density_by_differences(const Material& material, Vec3
     const std::optional<BsdfSample> sx = draw(lobe, kPlaces[i] * kStep, 0);
     const std::optional<BsdfSample> sy = draw(lobe, 0, kPlaces[i] * kStep);
     if (!here || !sx || !sy) return std::nullopt;
+    // Near the critical angle a neighbour may be refracted where this one is reflected: no map to differentiate.
+    if (sx->wi.z * here->wi.z < 0 || sy->wi.z * here->wi.z < 0) return std::nullopt;
     along_x[i] = sx->wi, along_y[i] = sy->wi;
   }
   const double solid_angle = cross_length(derivative(along_x[0], along_x[1], along_x[2], along_x[3]),
