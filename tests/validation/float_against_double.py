@@ -16,8 +16,9 @@ import subprocess
 import sys
 import tempfile
 
+from tables import replace_table
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- float against double: begin -->", "<!-- float against double: end -->"
 BOUND_DB = 60
 LAYERS = ("beauty", "diffuse", "specular")
 
@@ -62,14 +63,6 @@ def psnr(program: pathlib.Path, reference: pathlib.Path, test: pathlib.Path, fol
     return {layer["layer"]: layer["psnr"] for layer in json.loads(report.read_text())["layers"]}
 
 
-def replace_table(document: pathlib.Path, table: str) -> None:
-    text = document.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        sys.exit(f"{document}: no place for the table")
-    head, rest = text.split(BEGIN)
-    document.write_text(f"{head}{BEGIN}\n{table}{END}{rest.split(END)[1]}", encoding="utf-8")
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--spp", type=int, default=64)
@@ -102,7 +95,7 @@ def main() -> int:
     if low:
         print(f"below {BOUND_DB} dB: {', '.join(low)}", file=sys.stderr)
     elif arguments.into:
-        replace_table(arguments.into, table)
+        replace_table(arguments.into, "float against double", table)
     return 1 if low else 0
 
 

@@ -14,8 +14,9 @@ import pathlib
 import subprocess
 import sys
 
+from tables import replace_table
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- full statistics: begin -->", "<!-- full statistics: end -->"
 FIELDS = ("family name theta side band p_bins p_cells p_mass mass_error below weight pdf energy energy_sd "
           "jacobian_lacking jacobian reciprocity is_reciprocal conserves").split()
 TEXTS = {"family", "name", "band"}
@@ -95,14 +96,6 @@ def table(rows: list[dict], level: float) -> str:
                    f"{level:.1e} for 0.01 of all.\n")
 
 
-def replace_table(document: pathlib.Path, new: str) -> None:
-    text = document.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        sys.exit(f"{document}: no place for the table")
-    head, rest = text.split(BEGIN)
-    document.write_text(f"{head}{BEGIN}\n{new}{END}{rest.split(END)[1]}", encoding="utf-8")
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
@@ -129,7 +122,7 @@ def main() -> int:
     for line in broken:
         print(line, file=sys.stderr)
     if arguments.into:
-        replace_table(arguments.into, made)
+        replace_table(arguments.into, "full statistics", made)
     return 1 if broken else 0
 
 

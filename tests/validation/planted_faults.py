@@ -17,8 +17,9 @@ import subprocess
 import sys
 from typing import NamedTuple
 
+from tables import replace_table
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- planted faults: begin -->", "<!-- planted faults: end -->"
 
 
 class Fault(NamedTuple):
@@ -186,14 +187,6 @@ def check_unplanted(copy: Copy, faults: list[Fault]) -> dict[str, str]:
     return wrong
 
 
-def replace_table(document: pathlib.Path, table: str) -> None:
-    text = document.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise Failure(f"{document}: no place for the table")
-    head, rest = text.split(BEGIN)
-    document.write_text(f"{head}{BEGIN}\n{table}{END}{rest.split(END)[1]}", encoding="utf-8")
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", help="faults whose name contains one of these")
@@ -221,7 +214,7 @@ def main() -> int:
         table += row
     print(table)
     if arguments.into and not wrong:
-        replace_table(arguments.into, table)
+        replace_table(arguments.into, "planted faults", table)
     return 1 if wrong or not faults else 0
 
 
