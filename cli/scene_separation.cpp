@@ -63,10 +63,14 @@ bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Pro
                                 separated.was_cached ? "separated before," : "separated into",
                                 separated.file.string(),
                                 separation.model.empty() ? ", which draws its directions (--paired)" : ""));
+      if (measured->albedo != AlbedoLimit::kKeep && !separation.model.empty()) {
+        progress.note(fmt::format(
+            "{}: separated from the values as they were measured, whatever \"albedo\" says", material.name));
+      }
       const fs::path directions = separation.paired ? separated.file : fs::path();
       ++count;
       if (separation.model.empty()) {
-        material.kind = MeasuredDesc{measured->file, directions};
+        material.kind = MeasuredDesc{measured->file, directions, measured->albedo};
         continue;
       }
       SeparatedDesc description{

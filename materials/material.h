@@ -19,6 +19,7 @@
 #include "materials/glossy.h"
 #include "materials/lambert.h"
 #include "materials/masked.h"
+#include "materials/measured_albedo.h"
 #include "materials/measured_brdf.h"
 #include "materials/mix.h"
 #include "materials/normal_mapped.h"
@@ -72,6 +73,7 @@ struct MeasuredDesc {
   std::filesystem::path file;
   /// A `.sep` file whose diffraction model draws the directions instead (PairedBrdf); empty: its own density.
   std::filesystem::path directions{};
+  AlbedoLimit albedo = AlbedoLimit::kKeep;
 };
 /// A `.sep` file, not yet read, and the model to render it with: without one the richest that the file holds.
 struct SeparatedDesc {

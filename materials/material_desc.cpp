@@ -235,13 +235,21 @@ NormalMappedDesc parse_normal_map(const JsonValue& json) {
   return mapped;
 }
 
+MeasuredDesc parse_measured(const JsonValue& json) {
+  MeasuredDesc measured{.file = json.require("file").path()};
+  const std::string albedo = json.get("albedo").choice("keep", {"keep", "clip", "scale"});
+  if (albedo == "clip") measured.albedo = AlbedoLimit::kClip;
+  if (albedo == "scale") measured.albedo = AlbedoLimit::kScale;
+  return measured;
+}
+
 decltype(MaterialDesc::kind) parse_kind(const JsonValue& json, const std::string& type) {
   if (type == "conductor") return parse_conductor(json);
   if (type == "dielectric") return parse_dielectric(json);
   if (type == "glossy") return parse_glossy(json);
   if (type == "plastic") return parse_plastic(json);
   if (type == "diffractive") return parse_diffractive(json);
-  if (type == "measured") return MeasuredDesc{json.require("file").path()};
+  if (type == "measured") return parse_measured(json);
   if (type == "separated") return parse_separated(json);
   if (type == "two_sided") return parse_parts<TwoSidedDesc>(json);
   if (type == "mix") return parse_mix(json);
@@ -300,7 +308,9 @@ struct Builder {
     return nest(build_material(desc.parts.at(i)));
   }
   Material operator()(const MeasuredDesc& m) const {
-    return with_directions(MeasuredBrdf(read_measured(m.file)), m.directions);
+    MeasuredTables tables = read_measured(m.file);
+    limit_albedo(tables, m.albedo);
+    return with_directions(MeasuredBrdf(tables), m.directions);
   }
   Material operator()(const SeparatedDesc& s) const {
     const SeparatedSource source = read_separated_source(s.file);

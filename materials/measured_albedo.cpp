@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "core/math/math.h"
@@ -15,6 +17,8 @@ namespace {
 /// Points a side of the square that directions are drawn from: as many as the database's tables have, so that
 /// no cell is missed.
 constexpr int kSide = 32;
+/// Of values stored as float: a limited albedo may lie so far above 1.
+constexpr double kRounding = 1e-6;
 
 /// Sums over the axis of value / density, at the middles of the square's cells.
 void add_direction(const MeasuredBrdf& measured, Vec3 wo, Vec3 wi, double pdf, std::vector<double>& sum) {
@@ -40,31 +44,73 @@ std::vector<double> albedo_at(const MeasuredBrdf& measured, Vec3 wo, const Shadi
   return sum;
 }
 
-}  // namespace
+/// An incident direction that was measured.
+struct Slice {
+  std::size_t phi_index = 0, theta_index = 0;
+  float theta_i = 0;
+};
 
-AlbedoPeak largest_albedo(const MeasuredBrdf& measured) {
+/// Visits every one with its albedo, a value for each place of the spectral axis.
+template <typename Visit>
+void for_each_slice(const MeasuredBrdf& measured, const Visit& visit) {
   const MeasuredTables& tables = measured.tables();
   // Only directions and densities are asked of the samples: any wavelengths do.
   std::array<Float, kLanes> lambda_nm{}, pdf_per_nm{};
   lambda_nm.fill(550);
   pdf_per_nm.fill(1);
   const SampledWavelengths lambda(lambda_nm, pdf_per_nm);
-  AlbedoPeak peak;
-  for (const float phi : tables.phi_i) {
-    for (const float theta : tables.theta_i) {
+  for (std::size_t j = 0; j < tables.phi_i.size(); ++j) {
+    for (std::size_t i = 0; i < tables.theta_i.size(); ++i) {
+      const float phi = tables.phi_i[j], theta = tables.theta_i[i];
       if (theta > measured.last_measured_theta_i()) break;
       const Vec3 wo{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-      const std::vector<double> albedo = albedo_at(measured, wo, {.lambda = lambda});
-      for (std::size_t k = 0; k < albedo.size(); ++k) {
-        if (albedo[k] > peak.albedo) peak = {albedo[k], radians_to_degrees(double(theta)), k};
-      }
+      visit(Slice{j, i, theta}, albedo_at(measured, wo, {.lambda = lambda}));
     }
   }
+}
+
+}  // namespace
+
+AlbedoPeak largest_albedo(const MeasuredBrdf& measured) {
+  AlbedoPeak peak;
+  for_each_slice(measured, [&](const Slice& slice, const std::vector<double>& albedo) {
+    for (std::size_t k = 0; k < albedo.size(); ++k) {
+      if (albedo[k] > peak.albedo) peak = {albedo[k], radians_to_degrees(double(slice.theta_i)), k};
+    }
+  });
   return peak;
 }
 
+void limit_albedo(MeasuredTables& tables, AlbedoLimit limit) {
+  if (limit == AlbedoLimit::kKeep) return;
+  const MeasuredBrdf measured(tables);
+  const std::size_t table = std::size_t(tables.table_size) * std::size_t(tables.table_size);
+  const auto divide = [&](std::size_t slice, std::size_t wavelength, double by) {
+    const auto begin =
+        tables.spectra.begin() + std::ptrdiff_t((slice * tables.axis.size() + wavelength) * table);
+    std::transform(begin, begin + std::ptrdiff_t(table), begin,
+                   [by](float x) { return float(double(x) / by); });
+  };
+  if (limit == AlbedoLimit::kScale) {
+    const double peak = largest_albedo(measured).albedo;
+    for (float& x : tables.spectra) x = float(double(x) / std::max(peak, 1.0));
+    return;
+  }
+  const std::size_t elevations = tables.theta_i.size();
+  for_each_slice(measured, [&](const Slice& slice, const std::vector<double>& albedo) {
+    const bool is_last = slice.theta_index + 1 == elevations ||
+                         tables.theta_i[slice.theta_index + 1] > measured.last_measured_theta_i();
+    const std::size_t end = is_last ? elevations : slice.theta_index + 1;  // beyond are copies of the last
+    for (std::size_t theta = slice.theta_index; theta < end; ++theta) {
+      for (std::size_t k = 0; k < albedo.size(); ++k) {
+        if (albedo[k] > 1) divide(slice.phi_index * elevations + theta, k, albedo[k]);
+      }
+    }
+  });
+}
+
 std::optional<std::string> albedo_warning(const AlbedoPeak& peak, const SpectralAxis& axis) {
-  if (!(peak.albedo > 1)) return std::nullopt;
+  if (!(peak.albedo > 1 + kRounding)) return std::nullopt;
   const std::string where = axis.is_rgb() ? std::string(1, "RGB"[peak.index])
                                           : fmt::format("{:.0f} nm", double(axis.lambda_nm()[peak.index]));
   return fmt::format(

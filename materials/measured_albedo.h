@@ -11,6 +11,14 @@
 
 namespace spectrace {
 
+/// What becomes of a measurement that reflects more light than it receives.
+enum class AlbedoLimit {
+  kKeep,   ///< nothing
+  kClip,   ///< each incident direction and wavelength of an albedo above 1 is divided by it: reciprocity may
+           ///< suffer there
+  kScale,  ///< all values are divided by the largest albedo: colours and reciprocity stay
+};
+
 struct AlbedoPeak {
   double albedo = 0;      ///< ∫ f cosθ dω over the upper hemisphere
   double theta_deg = 0;   ///< elevation of wo from the normal, one of those measured
@@ -20,8 +28,12 @@ struct AlbedoPeak {
 /// directions each.
 AlbedoPeak largest_albedo(const MeasuredBrdf& measured);
 
+/// Changes `tables.spectra` so that largest_albedo() is at most 1; what has not been measured
+/// (last_measured_theta_i()) goes with the last slice that has. Costs what largest_albedo() does.
+void limit_albedo(MeasuredTables& tables, AlbedoLimit limit);
+
 /// "albedo 1.07 at 78 degrees and 465 nm: the measurement reflects more light than it receives", of a peak
-/// above 1. Values are kept as measured: paths end by Russian roulette and depth whatever they are.
+/// above 1. Paths end by Russian roulette and depth whatever values are.
 std::optional<std::string> albedo_warning(const AlbedoPeak& peak, const SpectralAxis& axis);
 
 }  // namespace spectrace

@@ -146,14 +146,21 @@ TEST(H10_AlbedoAboveOne, PathsBetweenWallsThatMakeLightEnd) {
   const TemporaryFolder folder;
   measured_to_tensors(tables).write(folder / "bright.bsdf");
   SceneDesc scene = empty_scene();
-  scene.materials = {{.name = "wall", .where = "", .kind = MeasuredDesc{folder / "bright.bsdf"}}};
   for (const ShapeDesc& wall : inward_box("wall")) scene.shapes.push_back(emitting(wall, 1));
   scene.camera.origin = {0, Float(-0.5), Float(0.1)};
   scene.integrator = {.max_depth = 64, .roulette_depth = 4};
-  const RenderResult result = render_scene(scene, 64);
-  EXPECT_EQ(result.report.invalid_samples, 0U);
-  for (const float x : result.image.data) ASSERT_TRUE(std::isfinite(x));
-  EXPECT_GT(estimate_y(result.image).mean, 5);  // kept as measured: no bounce loses
+  const auto radiance = [&](AlbedoLimit limit) {
+    scene.materials = {
+        {.name = "wall", .where = "", .kind = MeasuredDesc{.file = folder / "bright.bsdf", .albedo = limit}}};
+    const RenderResult result = render_scene(scene, 64);
+    EXPECT_EQ(result.report.invalid_samples, 0U);
+    for (const float x : result.image.data) EXPECT_TRUE(std::isfinite(x));
+    return estimate_y(result.image).mean;
+  };
+  // Kept as measured, each bounce gains; limited, none does: at most the 65 vertices' own light.
+  EXPECT_GT(radiance(AlbedoLimit::kKeep), 1000);
+  EXPECT_LT(radiance(AlbedoLimit::kClip), 66);
+  EXPECT_LT(radiance(AlbedoLimit::kScale), 66);
 }
 
 using H11_NarrowLobes = EveryMeasurement;

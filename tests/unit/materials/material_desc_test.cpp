@@ -47,6 +47,10 @@ TEST(MaterialDesc, ReadsEveryType) {
       parse(R"({"name": "a", "type": "conductor", "eta": 0.2, "k": 3, "roughness": 0})").kind));
   EXPECT_TRUE(
       std::holds_alternative<Dielectric>(parse(R"({"name": "a", "type": "dielectric", "eta": 1.5})").kind));
+  EXPECT_EQ(std::get<MeasuredDesc>(
+                parse(R"({"name": "a", "type": "measured", "file": "x.bsdf", "albedo": "scale"})").kind)
+                .albedo,
+            AlbedoLimit::kScale);
   EXPECT_EQ(std::get<MeasuredDesc>(parse(R"({"name": "a", "type": "measured", "file": "x.bsdf"})").kind)
                 .file.filename(),
             "x.bsdf");

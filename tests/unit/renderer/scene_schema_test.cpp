@@ -111,7 +111,7 @@ Json everything() {
       {"name": "leaf", "type": "mask", "material": {"type": "lambert", "reflectance": 0.3},
        "opacity": {"bitmap": "BITMAP"}},
       {"name": "brick", "type": "normal_map", "material": {"type": "lambert", "reflectance": 0.3}, "normals": "BITMAP"},
-      {"name": "real", "type": "measured", "file": "furnace.json"},
+      {"name": "real", "type": "measured", "file": "furnace.json", "albedo": "clip"},
       {"name": "lobes", "type": "separated", "file": "furnace.json", "model": "fresnel"}],
     "groups": [{"name": "pair", "shapes": [
       {"type": "sphere", "material": "clay", "center": [0, 0, 1], "radius": 0.5},
