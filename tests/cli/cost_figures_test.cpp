@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `spectrace cost` says of a ball whose colour shifts with the angle: laws that noise and bias must obey.
-// With fixed samples instead of a budget: the same on every machine.
+// What `spectrace cost` says of a ball whose colour shifts with the angle: laws that noise and bias must
+// obey. With fixed samples instead of a budget: the same on every machine.
 #include <array>
 #include <cmath>
 #include <map>
@@ -91,6 +91,19 @@ TEST_F(CostFigures, NoiseOfIndependentSamplesFallsAsOneOverTime) {
   EXPECT_NEAR(independent.exponent, 1, kSlopeTolerance);
   EXPECT_GT(own.exponent, 1 + kSlopeTolerance) << "stratified samples";
   EXPECT_LT(own.rel_mse(64), independent.rel_mse(64));
+}
+
+TEST_F(CostFigures, FittedErrorHoldsForSettingsThatWereNotMeasured) {
+  constexpr double kTolerance = 0.25;
+  for (const Options& options : {Options{}, Options{"--separate", "sun"}, kIndependent}) {
+    const ErrorModel model = fit(options);
+    for (const int spp : {12, 24, 48, 128}) {  // between the ladder's rungs, and beyond the last
+      const double expected = model.rel_mse(spp) + known();
+      const double measured = rel_mse(spp, 300 + std::uint64_t(spp), options);
+      EXPECT_NEAR(measured, expected, kTolerance * expected)
+          << spp << " samples, " << (options.empty() ? "default" : options.back());
+    }
+  }
 }
 
 TEST_F(CostFigures, BiasOfOneColourExceedsThatOfColoursByAngle) {
