@@ -23,7 +23,9 @@ TEXTS = {"family", "name", "band"}
 
 FAMILY_ALPHA = 0.01  # of all chi-square and mass tests together (Šidák 1967)
 WEIGHT_LIMIT = 1e-4  # 99th percentile over all angles of a BSDF: the contract's own
-ONE_ANGLE_LIMIT = 3e-4  # at one angle (tests/statistical/contract_test.cpp)
+# At one angle: rounding of single precision a thousandth above the horizon. Built in double precision (preset `double`) the
+# largest seen, 3.5e-4 of two real measurements at 89.9 degrees, become 7e-13.
+ONE_ANGLE_LIMIT = 5e-4
 # Finite differences of single precision, where the lobe is no sliver of the horizon (to 85 degrees).
 JACOBIAN_LIMIT, JACOBIAN_MOST_DEG = 2e-2, 85
 RECIPROCITY_LIMITS = {"analytic": 1e-4, "table": 1e-3}  # tables turn rounding of directions into that of coordinates
