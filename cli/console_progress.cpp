@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "cli/choice.h"
 #include "core/base/json.h"
 
 namespace spectrace::cli {
@@ -120,13 +121,12 @@ void ConsoleProgress::clear_line() {
 void add_progress_option(CLI::App& command, ProgressStyle& style) {
   const std::map<std::string, ProgressStyle> styles{
       {"auto", ProgressStyle::kAuto}, {"plain", ProgressStyle::kPlain}, {"json", ProgressStyle::kJson}};
-  command
-      .add_option(
+  take_one_of(
+      command.add_option(
           "--progress", style,
           "on standard error: auto (a line that rewrites itself on a terminal, else plain), plain, json "
-          "(a line a second: stage, done, total, elapsed_s, remaining_s)")
-      ->transform(CLI::CheckedTransformer(styles).description(""))
-      ->type_name("auto|plain|json");
+          "(a line a second: stage, done, total, elapsed_s, remaining_s)"),
+      styles);
 }
 
 }  // namespace spectrace::cli

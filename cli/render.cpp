@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/aovs_option.h"
+#include "cli/choice.h"
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/effects_option.h"
@@ -276,8 +277,7 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
   add_aovs_option(app, arguments.aovs, "the scene's \"aovs\", else lobes");
   const std::map<std::string, AovNames> names{
       {"arnold", AovNames::kArnold}, {"blender", AovNames::kBlender}, {"kpcn", AovNames::kKpcn}};
-  app.add_option("--aov-names", arguments.output.names, "whose names the channels get: arnold, blender, kpcn")
-      ->transform(CLI::CheckedTransformer(names))
+  take_one_of(app.add_option("--aov-names", arguments.output.names, "whose names the channels get"), names)
       ->default_str("arnold");
   app.add_option("--exposure", arguments.output.exposure, "factor on the PNG, not on the EXR")
       ->check(CLI::PositiveNumber)

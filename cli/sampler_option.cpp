@@ -4,6 +4,8 @@
 #include <map>
 #include <string>
 
+#include "cli/choice.h"
+
 namespace spectrace::cli {
 
 void add_sampler_option(CLI::App& app, std::optional<SamplerKind>& sampler) {
@@ -11,11 +13,12 @@ void add_sampler_option(CLI::App& app, std::optional<SamplerKind>& sampler) {
   for (const SamplerKind kind : {SamplerKind::kOwenSobol, SamplerKind::kIndependent}) {
     names.emplace(sampler_name(kind), kind);
   }
-  app.add_option(
-         "--sampler", sampler,
-         "how the samples of a pixel relate: owen-sobol (stratified), independent (more noise); default: "
-         "the scene's")
-      ->transform(CLI::CheckedTransformer(names));
+  take_one_of(
+      app.add_option(
+          "--sampler", sampler,
+          "how the samples of a pixel relate: owen-sobol (stratified), independent (more noise); default: "
+          "the scene's"),
+      names);
 }
 
 }  // namespace spectrace::cli
