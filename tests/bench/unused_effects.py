@@ -8,7 +8,6 @@ the full kernel: instructions, and CPU seconds in turns.
 """
 
 import argparse
-import json
 import os
 import re
 import resource
@@ -100,7 +99,7 @@ def main() -> None:
         force = [option for name in names if name != "specular-parts" for option in ("--force-effect", name)]
         print(f"{'scene':<22}{'lean kernel':<24}{'instructions':>14}{'CPU s':>10}   full over lean", flush=True)
         for scene in sorted((ROOT / "scenes").glob("*.json")):
-            if "camera" not in json.loads(scene.read_text()):
+            if scene.name == "scene.schema.json":
                 continue
             tiny, larger = small_copy(scene, 24, folder), small_copy(scene, 192, folder)
             count = instructions(program, tiny, folder, *force) / instructions(program, tiny, folder)
