@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `spectrace cost` says of a ball whose colour shifts with the angle: laws that noise and bias must
 // obey. With fixed samples instead of a budget: the same on every machine.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -8,6 +9,7 @@
 #include <regex>
 #include <vector>
 
+#include "core/base/json.h"
 #include "core/image/error_model.h"
 #include "core/image/metrics.h"
 #include "tests/cli/program.h"
@@ -42,18 +44,12 @@ class CostFigures : public ::testing::Test {
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
-  static Image beauty(int spp, std::uint64_t seed, const Options& options) {
-    Options arguments{"scenes/ball.json",
-                      "-o",
-                      "out.exr",
-                      "--spp",
-                      std::to_string(spp),
-                      "--seed",
-                      std::to_string(seed),
-                      "--grid",
-                      "45x45x90",
-                      "--cache",
-                      "cache"};
+  static const std::filesystem::path& folder() { return folder_->path(); }
+  static Image beauty(int spp, std::uint64_t seed, const Options& options,
+                      const std::string& scene = "scenes/ball.json") {
+    Options arguments{
+        scene,    "-o",       "out.exr", "--spp", std::to_string(spp), "--seed", std::to_string(seed),
+        "--grid", "45x45x90", "--cache", "cache"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramResult result = run_spectrace(arguments, folder_->path());
     EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -62,6 +58,11 @@ class CostFigures : public ::testing::Test {
   }
   static double rel_mse(int spp, std::uint64_t seed, const Options& options) {
     return compare_images(mean_, beauty(spp, seed, options), {.epsilon = epsilon_}).rel_mse;
+  }
+  /// Against the reference, without the reference's own noise.
+  static double error(const Image& picture, double epsilon) {
+    return std::sqrt(compare_images(mean_, picture, {.epsilon = epsilon}).rel_mse -
+                     noise_rel_mse({first_, second_}, epsilon).value);
   }
   static double known() { return noise_rel_mse({first_, second_}, epsilon_).value; }
   static Estimate bias(const Options& options) {
@@ -116,6 +117,63 @@ TEST_F(CostFigures, BiasOfOneColourExceedsThatOfColoursByAngle) {
   for (const Options& raw : {Options{}, kIndependent}) {
     const Estimate none = bias(raw);
     EXPECT_NEAR(none.value, 0, 4 * none.standard_error);
+  }
+}
+
+/// A setting of cost.json.
+struct Fit {
+  ErrorModel model;
+  std::vector<int> ladder;
+};
+struct Report {
+  double epsilon = 0;
+  std::map<std::string, Fit> fits;
+};
+
+Report read_report(const std::filesystem::path& file) {
+  JsonDocument document = JsonDocument::load(file);
+  Report report{.epsilon = document.root().require("epsilon").number(0), .fits = {}};
+  for (const JsonValue& setting : document.root().require("settings").elements()) {
+    Fit fit;
+    fit.model.noise = setting.require("noise_rel_mse_at_one_sample").number(0);
+    fit.model.exponent = setting.require("noise_exponent").number(0);
+    fit.model.bias = std::max(0.0, setting.require("bias_rel_mse").number(0));
+    for (const JsonValue& point : setting.require("points").elements()) {
+      fit.ladder.push_back(int(point.require("spp").integer(0, 0, 1 << 20)));
+    }
+    report.fits[setting.require("knob").string() + ' ' + setting.require("name").string()] = fit;
+  }
+  return report;
+}
+
+TEST_F(CostFigures, ReportPredictsTheErrorOfWhatIsNotInItsLadders) {
+  constexpr double kTolerance = 0.25;
+  const ProgramResult cost = run_spectrace({"cost", "scenes/ball.json", "-o", "report", "--budget", "20",
+                                            "--grid", "45x45x90", "--cache", "cache"},
+                                           folder());
+  ASSERT_EQ(cost.exit_code, 0) << cost.errors;
+  const Report report = read_report(folder() / "report/cost.json");
+  write_text(folder() / "scenes/short.json",
+             std::regex_replace(read_text(folder() / "scenes/ball.json"), std::regex("\"max_depth\": 6"),
+                                "\"max_depth\": 2"));
+  struct Unseen {
+    const char* name;
+    const char* scene;
+    Options options;
+  };
+  const std::array<Unseen, 4> unseen{{{"exact exact", "scenes/ball.json", {}},
+                                      {"sampler independent", "scenes/ball.json", kIndependent},
+                                      {"model sun", "scenes/ball.json", {"--separate", "sun"}},
+                                      {"path depth 2", "scenes/short.json", {}}}};
+  for (const auto& [name, scene, options] : unseen) {
+    ASSERT_TRUE(report.fits.contains(name)) << name << '\n' << cost.output;
+    const auto& [model, ladder] = report.fits.at(name);
+    for (const int spp : {12, 24, 48}) {
+      ASSERT_EQ(std::count(ladder.begin(), ladder.end(), spp), 0) << name;
+      const double measured = error(beauty(spp, 500 + std::uint64_t(spp), options, scene), report.epsilon);
+      EXPECT_NEAR(std::sqrt(model.rel_mse(spp)), measured, kTolerance * measured)
+          << name << ", " << spp << " samples; measured at up to " << ladder.back();
+    }
   }
 }
 
