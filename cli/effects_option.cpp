@@ -45,32 +45,12 @@ void add_effects_option(CLI::App& app, EffectsOption& effects) {
       ->take_all();
 }
 
-namespace {
-
-/// Effects that are part of a material have no kernels of their own.
-void print_material_effects(const SceneDesc& description) {
-  for (const Approximation& approximation : approximations()) {
-    const bool has_kernels =
-        std::any_of(kFeatureInfos.begin(), kFeatureInfos.end(),
-                    [&](const FeatureInfo& info) { return info.id == approximation.effect; });
-    if (has_kernels) continue;
-    SceneDesc without = description;
-    const bool is_used = approximate(without, approximation.effect);
-    fmt::print("{}{}: {}\n", is_used ? "simulated      " : "not simulated  ", approximation.effect,
-               is_used ? "a material has it" : "no material has it");
-  }
-}
-
-}  // namespace
-
-void print_effects(const SceneDesc& description, const Scene& scene, const AovSet& aovs,
-                   const Features& forced) {
+void print_effects(const Scene& scene, const AovSet& aovs, const Features& forced) {
   const Kernel& kernel = choose_kernel(united(required_features(scene, aovs), forced));
   const EffectList list = list_effects(scene, aovs, forced, kernel.features);
   fmt::print("kernel: {}\n", kernel.name);
   for (const std::string& effect : list.used) fmt::print("simulated      {}\n", effect);
   for (const std::string& effect : list.skipped) fmt::print("not simulated  {}\n", effect);
-  print_material_effects(description);
   for (const std::string& approximation : scene.approximations) {
     fmt::print("approximation  {}\n", approximation);
   }

@@ -25,7 +25,6 @@ struct EffectsOption {
 void add_effects_option(CLI::App& app, EffectsOption& effects);
 
 /// What will be simulated by which kernel, what not, and why: a line each.
-void print_effects(const SceneDesc& description, const Scene& scene, const AovSet& aovs,
-                   const Features& forced);
+void print_effects(const Scene& scene, const AovSet& aovs, const Features& forced);
 
 }  // namespace spectrace::cli

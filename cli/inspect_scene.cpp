@@ -27,7 +27,10 @@ std::string text_of(const Ggx& ggx) {
 }
 
 std::string text_of(const SeparatedDesc& s) {
-  const std::string model = s.analytic ? "analytic" : s.model ? name_of(*s.model) : "richest";
+  const std::string model = s.analytic    ? "analytic"
+                            : s.model     ? name_of(*s.model)
+                            : s.tolerance ? "auto"
+                                          : "richest";
   return fmt::format("{}, model {}", s.file.string(), model);
 }
 

@@ -159,6 +159,7 @@ ExitCode render_command(Arguments arguments) {
   arguments.output.file = output_file(arguments);
   set_texture_cache_limit(arguments.texture_cache);
   SceneDesc description = load_scene(arguments.scene);
+  settle_models(description, progress);
   arguments.separation.threads = arguments.threads;
   if (arguments.separation.is_asked() && !separate_materials(description, arguments.separation, progress)) {
     return ExitCode::kDiffers;
@@ -172,7 +173,7 @@ ExitCode render_command(Arguments arguments) {
   const RenderOptions options = render_options(arguments, scene);
   if (arguments.effects.only_list) {
     progress.finish();
-    print_effects(description, scene, options.aovs, options.forced);
+    print_effects(scene, options.aovs, options.forced);
     return ExitCode::kSuccess;
   }
   Start start = film_to_start_with(scene, options, arguments, progress);

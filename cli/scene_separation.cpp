@@ -29,7 +29,29 @@ fs::path default_cache() {
   return (home.empty() ? fs::temp_directory_path() : fs::path(home) / ".cache") / "spectrace";
 }
 
+/// The material and all its parts; a part without a name has that of the whole, for messages.
+std::vector<MaterialDesc*> all_parts(SceneDesc& scene) {
+  std::vector<MaterialDesc*> parts;
+  for (MaterialDesc& whole : scene.materials) {
+    for_each_desc(whole, [&](MaterialDesc& part) {
+      if (part.name.empty()) part.name = whole.name;
+      parts.push_back(&part);
+    });
+  }
+  return parts;
+}
+
 }  // namespace
+
+void settle_models(SceneDesc& scene, Progress& progress) {
+  for (MaterialDesc* const material : all_parts(scene)) {
+    auto* separated = std::get_if<SeparatedDesc>(&material->kind);
+    if (separated == nullptr || separated->model || !separated->tolerance) continue;
+    const ModelChoice choice = choose_model(read_separated_source(separated->file), *separated->tolerance);
+    separated->model = choice.model;
+    progress.note(fmt::format("{}: model {}", material->name, choice.reason));
+  }
+}
 
 bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Progress& progress) {
   const fs::path cache = separation.cache.empty() ? default_cache() : fs::path(separation.cache);
@@ -43,14 +65,7 @@ bool separate_materials(SceneDesc& scene, const SceneSeparation& separation, Pro
   options.residual_rank = may_need_residual ? kDefaultResidualRank : 0;
   options.analytic = is_analytic;
   std::size_t count = 0;
-  std::vector<MaterialDesc*> materials;
-  for (MaterialDesc& whole : scene.materials) {
-    for_each_desc(whole, [&](MaterialDesc& part) {
-      if (part.name.empty()) part.name = whole.name;  // for messages
-      materials.push_back(&part);
-    });
-  }
-  for (MaterialDesc* const each : materials) {
+  for (MaterialDesc* const each : all_parts(scene)) {
     MaterialDesc& material = *each;
     if (const auto* measured = std::get_if<MeasuredDesc>(&material.kind)) {
       const CachedSeparation separated =

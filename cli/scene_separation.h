@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "core/base/progress.h"
+#include "materials/choose_model.h"
 #include "materials/half_difference_grid.h"
 #include "renderer/scene_desc.h"
-#include "separation/choose_model.h"
 #include "separation/compact.h"
 
 namespace spectrace::cli {
@@ -27,6 +27,9 @@ struct SceneSeparation {
 
   [[nodiscard]] bool is_asked() const { return !model.empty() || paired; }
 };
+
+/// Separated materials of the model "auto" get the model that they are rendered with, noted with the reason.
+void settle_models(SceneDesc& scene, Progress& progress);
 
 /// Every measured material becomes its separated form, or with `paired` alone draws its directions. False,
 /// with the reason noted, where one cannot.

@@ -16,8 +16,8 @@
 #include "cli/separation_cache.h"
 #include "core/base/cost.h"
 #include "core/base/file.h"
+#include "materials/choose_model.h"
 #include "materials/separated_tables.h"
-#include "separation/choose_model.h"
 #include "separation/compact.h"
 
 namespace spectrace::cli {

@@ -80,6 +80,7 @@ struct SeparatedDesc {
   std::filesystem::path file;
   std::optional<SeparationModel> model{};
   bool analytic = false;               ///< the analytic model instead
+  std::optional<double> tolerance{};   ///< without a model: choose_model() takes one
   std::filesystem::path directions{};  ///< as MeasuredDesc::directions
 };
 /// Plastic without the table of its coat, which takes some 50 ms to make.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "materials/choose_model.h"
 #include "materials/material.h"
 #include "materials/metals.h"
 #include "materials/refractive_index.h"
@@ -195,9 +196,15 @@ PlasticDesc parse_plastic(const JsonValue& json) {
 SeparatedDesc parse_separated(const JsonValue& json) {
   SeparatedDesc separated{.file = json.require("file").path()};
   const std::string model = json.get("model").choice(
-      "richest", {"richest", "sun", "fresnel", "diffraction", "residual", "analytic"});
+      "richest", {"richest", "auto", "sun", "fresnel", "diffraction", "residual", "analytic"});
   separated.model = separation_model_named(model);
   separated.analytic = model == "analytic";
+  const JsonValue tolerance = json.get("tolerance");
+  if (model == "auto") {
+    separated.tolerance = tolerance.number(kDefaultTolerance, {.min = 0, .max = 1});
+  } else if (tolerance.exists()) {
+    tolerance.error("only the model \"auto\" has one");
+  }
   return separated;
 }
 
@@ -302,6 +309,11 @@ Material with_directions(Values values, const std::filesystem::path& directions)
                     SeparatedBrdf(source, std::min(richest_model(source), SeparationModel::kDiffraction)));
 }
 
+SeparationModel model_of(const SeparatedDesc& s, const SeparatedSource& source, SeparationModel richest) {
+  if (s.model) return *s.model;
+  return s.tolerance ? choose_model(source, *s.tolerance).model : richest;
+}
+
 struct Builder {
   template <typename Desc>
   static NestedMaterial part(const Desc& desc, std::size_t i) {
@@ -315,7 +327,7 @@ struct Builder {
   Material operator()(const SeparatedDesc& s) const {
     const SeparatedSource source = read_separated_source(s.file);
     if (s.analytic) return with_directions(build_analytic(s.file, source), s.directions);
-    const SeparationModel richest = richest_model(source), model = s.model.value_or(richest);
+    const SeparationModel richest = richest_model(source), model = model_of(s, source, richest);
     if (model > richest) {
       throw InputError(s.file.string(), {},
                        fmt::format("has no tables for the model {}, only up to {}: separate it again with "

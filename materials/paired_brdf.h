@@ -36,10 +36,8 @@ class PairedBrdf {
   [[nodiscard]] bool is_delta() const { return false; }
   /// The values, where they are a measurement's.
   [[nodiscard]] const MeasuredBrdf* measured() const { return std::get_if<MeasuredBrdf>(&values_); }
-  [[nodiscard]] bool has_specular_parts() const {
-    const auto* separated = std::get_if<SeparatedBrdf>(&values_);
-    return separated != nullptr && separated->has_specular_parts();
-  }
+  /// The same of a separated material's.
+  [[nodiscard]] const SeparatedBrdf* separated() const { return std::get_if<SeparatedBrdf>(&values_); }
 
  private:
   Values values_;

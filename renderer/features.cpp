@@ -3,6 +3,9 @@
 
 #include <fmt/core.h>
 
+#include <array>
+#include <string_view>
+#include <type_traits>
 #include <variant>
 
 namespace spectrace {
@@ -32,10 +35,55 @@ bool is_dispersive(const Material& material) {
   return glass != nullptr && !glass->eta.is_constant();
 }
 
+const SeparatedBrdf* separated_values(const Material& material) {
+  if (const auto* paired = std::get_if<PairedBrdf>(&material)) return paired->separated();
+  return std::get_if<SeparatedBrdf>(&material);
+}
+bool is_at_least(const Material& material, SeparationModel model) {
+  const SeparatedBrdf* separated = separated_values(material);
+  return separated != nullptr && separated->model() >= model;
+}
+
 bool has_specular_parts(const Material& material) {
-  if (const auto* paired = std::get_if<PairedBrdf>(&material)) return paired->has_specular_parts();
-  const auto* separated = std::get_if<SeparatedBrdf>(&material);
+  const SeparatedBrdf* separated = separated_values(material);
   return separated != nullptr && separated->has_specular_parts();
+}
+
+bool has_thin_film(const Material& material) {
+  return std::visit(
+      []<typename M>(const M& m) {
+        if constexpr (std::is_same_v<M, RoughDielectric>) {
+          return m.film().has_value();
+        } else if constexpr (requires { m.fresnel.film; }) {
+          return m.fresnel.film.has_value();
+        } else if constexpr (requires { m.film; }) {
+          return m.film.has_value();
+        } else {
+          return false;
+        }
+      },
+      material);
+}
+
+/// No kernel tells whether a material has it: it is part of the material.
+struct MaterialEffect {
+  std::string_view name;
+  std::string_view present, missing;
+  bool (*of)(const Material& part);
+};
+constexpr std::array<MaterialEffect, 3> kMaterialEffects{
+    {{"thin film", "an interface has one", "no interface has one", has_thin_film},
+     {"diffraction effect", "a separated material is rendered by a model that has it",
+      "no separated material is rendered by a model that has it",
+      [](const Material& part) { return is_at_least(part, SeparationModel::kDiffraction); }},
+     {"residual", "a separated material is rendered by the model that has it",
+      "no separated material is rendered by the model that has it",
+      [](const Material& part) { return is_at_least(part, SeparationModel::kResidual); }}}};
+
+bool has_part(const Material& material, const MaterialEffect& effect) {
+  bool any = false;
+  for_each_part(material, [&](const Material& part) { any = any || effect.of(part); });
+  return any;
 }
 
 /// What a material that is seen calls for.
@@ -51,10 +99,11 @@ Features features_of(const Material& material, const AovSet& aovs) {
   return f;
 }
 
-/// ", by the material \"glass\"", or nothing where it is no material that calls for it.
-std::string whose(const Scene& scene, const AovSet& aovs, bool Features::*flag) {
+/// ", by the material \"glass\"", or nothing where no material that is seen calls for it.
+template <typename CallsForIt>
+std::string whose(const Scene& scene, const CallsForIt& calls_for_it) {
   for (const Shape& shape : scene.geometry.shapes) {
-    if (features_of(scene.materials[shape.material], aovs).*flag) {
+    if (calls_for_it(scene.materials[shape.material])) {
       return fmt::format(", by the material \"{}\"", scene.material_names[shape.material]);
     }
   }
@@ -100,13 +149,22 @@ EffectList list_effects(const Scene& scene, const AovSet& aovs, const Features& 
   EffectList list;
   for (const FeatureInfo& info : kFeatureInfos) {
     if (needed.*info.flag) {
-      list.used.push_back(fmt::format("{}: {}{}", info.name, info.present, whose(scene, aovs, info.flag)));
+      const std::string by = whose(scene, [&](const Material& m) { return features_of(m, aovs).*info.flag; });
+      list.used.push_back(fmt::format("{}: {}{}", info.name, info.present, by));
     } else if (forced.*info.flag) {
       list.used.push_back(fmt::format("{}: {} (forced)", info.name, info.missing));
     } else {
       list.skipped.push_back(
           fmt::format("{}: {}{}", info.name, info.missing,
                       kernel.*info.flag ? " (the kernel checks for it all the same)" : ""));
+    }
+  }
+  for (const MaterialEffect& effect : kMaterialEffects) {
+    const std::string by = whose(scene, [&](const Material& m) { return has_part(m, effect); });
+    if (by.empty()) {
+      list.skipped.push_back(fmt::format("{}: {}", effect.name, effect.missing));
+    } else {
+      list.used.push_back(fmt::format("{}: {}{}", effect.name, effect.present, by));
     }
   }
   return list;

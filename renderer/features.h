@@ -114,7 +114,8 @@ struct EffectList {
 /// What the scene calls for is used, by the first material that calls for it where it is materials that do;
 /// what is `forced` beside it likewise: "instances: none in the scene (forced)". All others are skipped;
 /// where `kernel` still asks whether the scene has one, it says so: "instances: none in the scene (the kernel
-/// checks for it all the same)".
+/// checks for it all the same)". Thin films and the models of separated materials, which no flag is for, come
+/// last.
 [[nodiscard]] EffectList list_effects(const Scene& scene, const AovSet& aovs, const Features& forced,
                                       const Features& kernel);
 

@@ -34,7 +34,8 @@ struct Arguments {
 
 ExitCode cost_command(const Arguments& arguments) {
   ConsoleProgress progress(arguments.progress);
-  const SceneDesc scene = load_scene(arguments.scene);
+  SceneDesc scene = load_scene(arguments.scene);
+  settle_models(scene, progress);
   make_report_folder(arguments.output);
   const CostStudy study =
       measure_cost(scene, settings_of(scene, arguments.separation), arguments.options, progress);

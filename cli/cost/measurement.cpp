@@ -183,6 +183,7 @@ class Measurement {
     const RenderReport report = render_at(scene, kProbeSpp, kReferenceSeed, options_).report;
     seconds_a_sample_ = std::max(report.seconds, 1e-3) / kProbeSpp;
     study_.threads = report.threads;
+    study_.effects = report.effects;
   }
 
   /// Fewer pixels where there is no time for all: what is measured is a mean over pixels. True: there are.

@@ -9,6 +9,7 @@
 #include "cli/cost/settings.h"
 #include "core/image/error_model.h"
 #include "core/image/metrics.h"
+#include "renderer/features.h"
 
 namespace spectrace::cli {
 
@@ -37,6 +38,7 @@ struct CostStudy {
   int reference_spp = 0;  ///< 0: it was given
   double reference_seconds = 0;
   double reference_rel_mse = 0;  ///< its own noise
+  EffectList effects;            ///< that the scene calls for, and that it does not
   double epsilon = 0;            ///< of relMSE: kRelativeEpsilon of the reference
   Image reference;               ///< R, G, B
   double exposure = 1;           ///< of the pictures

@@ -129,6 +129,12 @@ std::string answers_table(const CostStudy& study) {
   return html + "</table>\n";
 }
 
+std::string effects_list(const char* title, const std::vector<std::string>& effects) {
+  std::string html = fmt::format("<p>{}:</p><ul>\n", title);
+  for (const std::string& effect : effects) html += fmt::format("<li>{}</li>\n", escaped(effect));
+  return html + "</ul>\n";
+}
+
 std::string pictures(const CostStudy& study) {
   const double exposure = study.exposure;
   const auto figure = [](const Image& picture, const std::string& caption) {
@@ -178,6 +184,8 @@ std::string cost_page(const CostStudy& study) {
       "from there to diffuse.</p>\n" +
       parts_table(study);
   html += "<h2>Seconds per effect</h2>\n" + svg(effects_chart(study));
+  html += effects_list("Simulated", study.effects.used);
+  html += effects_list("Not simulated", study.effects.skipped);
   for (const std::string& reason : study.left_out) {
     html += fmt::format("<p>Left out: {}</p>\n", escaped(reason));
   }

@@ -31,6 +31,13 @@ CostRecord read_record(const JsonValue& json) {
   return record;
 }
 
+void write_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
+  json.key(key);
+  json.begin_array();
+  for (const std::string& text : texts) json.value(text);
+  json.end_array();
+}
+
 }  // namespace
 
 std::string json_of(const CostStudy& study) {
@@ -89,10 +96,9 @@ std::string json_of(const CostStudy& study) {
     json.end_object();
   }
   json.end_array();
-  json.key("left_out");
-  json.begin_array();
-  for (const std::string& reason : study.left_out) json.value(reason);
-  json.end_array();
+  write_texts(json, "effects_used", study.effects.used);
+  write_texts(json, "effects_skipped", study.effects.skipped);
+  write_texts(json, "left_out", study.left_out);
   json.end_object();
   return json.text() + "\n";
 }

@@ -10,7 +10,7 @@
 
 #include "core/image/metrics.h"
 #include "materials/acquisition.h"
-#include "separation/choose_model.h"
+#include "materials/choose_model.h"
 #include "separation/tabulate.h"
 
 namespace spectrace::cli {

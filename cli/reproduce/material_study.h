@@ -8,8 +8,8 @@
 
 #include "cli/reproduce/material_pictures.h"
 #include "cli/reproduce/study_record.h"
+#include "materials/choose_model.h"
 #include "renderer/scene_desc.h"
-#include "separation/choose_model.h"
 #include "separation/compact.h"
 
 namespace spectrace::cli {

@@ -27,7 +27,7 @@
 #include "core/base/file.h"
 #include "core/base/version.h"
 #include "core/image/metrics.h"
-#include "separation/choose_model.h"
+#include "materials/choose_model.h"
 
 namespace spectrace::cli {
 namespace {

@@ -34,8 +34,8 @@ struct StudyRecord {
   std::int64_t wavelengths = 0;
   std::string choice;  ///< what --model auto takes, and why
   double specular_share = 0, lambert_cost = 0;
-  std::int64_t cells = 0, measured = 0, extrapolated = 0, invalid = 0, below_horizon = 0,
-               negative_values = 0, invalid_samples = 0;
+  std::int64_t cells = 0, measured = 0, extrapolated = 0, invalid = 0, below_horizon = 0, negative_values = 0,
+               invalid_samples = 0;
   std::vector<StudyRow> rows;
 };
 

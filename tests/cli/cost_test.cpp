@@ -70,6 +70,13 @@ TEST_F(Cost, WritesAPageThatNeedsNothingElse) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
   EXPECT_NE(page.find("data-label=\"exact, 8 samples"), std::string::npos);
+  const std::string json = read_text(folder_ / "report" / "cost.json");
+  for (const char* effect : {"environment: in the scene", "dispersion: no material"}) {
+    EXPECT_NE(page.find(effect), std::string::npos) << effect;
+  }
+  for (const char* effect : {"\"environment: in the scene\"", "\"dispersion: no material"}) {
+    EXPECT_NE(json.find(effect), std::string::npos) << effect;
+  }
 }
 
 TEST_F(Cost, TakesAReferenceThatIsGiven) {

@@ -2,6 +2,7 @@
 // Measuring and separating, as a user does.
 #include <algorithm>
 
+#include "core/image/image.h"
 #include "materials/measured_tables.h"
 #include "materials/separated_lookup.h"
 #include "tests/cli/program.h"
@@ -62,6 +63,29 @@ TEST_F(Separate, StoresWhatItIsAskedFor) {
   EXPECT_EQ(richest_model(read_separated_source(folder_ / "auto.sep")), SeparationModel::kSun);
   for (const char* file : {"full.sep", "sun.sep", "rest.sep"})
     EXPECT_EQ(run({"inspect", file}).exit_code, 0) << file;
+}
+
+TEST_F(Separate, ASceneMayLeaveTheModelToATolerance) {
+  write_measured("m.bsdf");
+  ASSERT_EQ(separate("m.bsdf", "rest.sep", {"--model", "residual"}).exit_code, 0);
+  const auto rendered = [&](const std::string& model) {
+    write_scene("s.json", R"({"name": "m", "type": "separated", "file": "rest.sep", )" + model + "}");
+    const ProgramResult result = run({"s.json", "-o", "s.exr"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return std::pair(result, read_image(folder_ / "s.exr").data);
+  };
+  const auto [loose, any] = rendered(R"("model": "auto", "tolerance": 1)");
+  EXPECT_TRUE(loose.complains("m: model sun: error ")) << loose.errors;
+  EXPECT_TRUE(loose.says("residual: no separated material is rendered by the model that has it"))
+      << loose.output;
+  EXPECT_EQ(any, rendered(R"("model": "sun")").second);
+  const auto [strict, exact] = rendered(R"("model": "auto", "tolerance": 0)");
+  EXPECT_TRUE(strict.complains("m: model residual: error 0.00 %")) << strict.errors;
+  EXPECT_TRUE(
+      strict.says("residual: a separated material is rendered by the model that has it, by the "
+                  "material \"m\""))
+      << strict.output;
+  EXPECT_EQ(exact, rendered(R"("model": "residual")").second);
 }
 
 TEST_F(Separate, AMaterialCannotBeRenderedByAModelItsFileLacks) {

@@ -57,6 +57,13 @@ TEST(MaterialDesc, ReadsEveryType) {
   const auto separated = std::get<SeparatedDesc>(
       parse(R"({"name": "a", "type": "separated", "file": "x.sep", "model": "fresnel"})").kind);
   EXPECT_EQ(separated.model, SeparationModel::kFresnel);
+  const auto chosen = std::get<SeparatedDesc>(
+      parse(R"({"name": "a", "type": "separated", "file": "x.sep", "model": "auto", "tolerance": 0.02})")
+          .kind);
+  EXPECT_EQ(chosen.model, std::nullopt);
+  EXPECT_EQ(chosen.tolerance, 0.02);
+  expect_problem(R"({"name": "a", "type": "separated", "file": "x.sep", "tolerance": 0.02})",
+                 "only the model \"auto\" has one");
 }
 
 TEST(MaterialDesc, ReadsRoughGlass) {

@@ -75,6 +75,9 @@ Scene zoo_scene(const std::string& name) {
   throw InternalError("no scene " + name);
 }
 
+/// Thin film, diffraction effect, residual: no flag is for them.
+constexpr std::size_t kOfMaterialsAlone = 3;
+
 EffectList effects_of(const std::string& name, const Features& forced = {}) {
   const Scene scene = zoo_scene(name);
   const Features needed = united(required_features(scene, kLobeAovs), forced);
@@ -83,7 +86,7 @@ EffectList effects_of(const std::string& name, const Features& forced = {}) {
 
 TEST(Features, EveryEffectIsListedOnceWithItsReason) {
   const EffectList list = effects_of("box");
-  EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size());
+  EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size() + kOfMaterialsAlone);
   EXPECT_EQ(list.used, (std::vector<std::string>{"indirect light: max_depth is above 1",
                                                  "area lights: a shape emits", "layers by lobe: asked for"}));
   EXPECT_EQ(list.skipped[0], "point, spot and directional lights: none in the scene");
@@ -97,10 +100,33 @@ TEST(Features, TheMaterialThatCallsForAnEffectIsNamed) {
   }));
 }
 
+TEST(Features, WhatIsPartOfAMaterialIsListedToo) {
+  const auto is_used = [](const EffectList& list, std::string_view start) {
+    return std::any_of(list.used.begin(), list.used.end(),
+                       [&](const std::string& effect) { return effect.starts_with(start); });
+  };
+  const EffectList separated = effects_of("separated ball");
+  EXPECT_TRUE(is_used(separated,
+                      "diffraction effect: a separated material is rendered by a model that has "
+                      "it, by the material \""));
+  EXPECT_FALSE(is_used(separated, "residual"));
+  EXPECT_FALSE(is_used(separated, "thin film"));
+  for (const NamedScene& entry : scene_zoo()) {
+    if (entry.name != "box") continue;
+    SceneDesc scene = entry.scene;
+    const ThinFilm film{.eta = Spectrum::constant(Float(1.3)), .thickness_nm = 300};
+    for (MaterialDesc& material : scene.materials) material.kind = Dielectric{.film = film};
+    SilentProgress progress;
+    const Scene built = build_scene(scene, progress);
+    EXPECT_TRUE(is_used(list_effects(built, kLobeAovs, {}, all_features()),
+                        "thin film: an interface has one, by the material \""));
+  }
+}
+
 TEST(Features, WhatIsForcedIsSimulatedAndSaysWhy) {
   const EffectList list = effects_of("box", {.instances = true});
   EXPECT_EQ(std::count(list.used.begin(), list.used.end(), "instances: none in the scene (forced)"), 1);
-  EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size());
+  EXPECT_EQ(list.used.size() + list.skipped.size(), kFeatureInfos.size() + kOfMaterialsAlone);
 }
 
 }  // namespace

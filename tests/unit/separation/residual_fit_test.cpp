@@ -11,8 +11,8 @@
 
 #include "core/math/math.h"
 #include "materials/acquisition.h"
+#include "materials/choose_model.h"
 #include "materials/material.h"
-#include "separation/choose_model.h"
 #include "separation/fill_grid.h"
 #include "separation/separate.h"
 #include "separation/tabulate.h"
@@ -143,6 +143,12 @@ TEST(ChooseModel, TakesTheCheapestWithinTheTolerance) {
     EXPECT_TRUE(choice.within_tolerance);
     EXPECT_EQ(choice.errors.size(), std::size_t(cheapest - errors.begin()) + 1);
   }
+  // Without the measurement: the richest model, off by nothing from itself, stands for it.
+  EXPECT_EQ(choose_model(tables, 0).model, SeparationModel::kResidual);
+  EXPECT_EQ(choose_model(tables, 1).model, SeparationModel::kSun);
+  const ModelChoice middle = choose_model(tables, errors[0] / 2);
+  EXPECT_EQ(middle.model, SeparationModel::kFresnel);
+  EXPECT_NEAR(middle.errors[0], errors[0], errors[3] + errors[0] / 10);  // the triangle's inequality
   const ModelChoice none = choose_model(measured, tables, 0);
   EXPECT_EQ(none.model, SeparationModel::kResidual);
   EXPECT_FALSE(none.within_tolerance);

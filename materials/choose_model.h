@@ -29,5 +29,7 @@ struct ModelChoice {
 
 /// The first model, cheapest first, of error at most `tolerance`; where none is, the richest of `source`.
 ModelChoice choose_model(const MeasuredBrdf& measured, const SeparatedSource& source, double tolerance);
+/// As above where the measurement is not at hand: the richest model of `source` stands for it.
+ModelChoice choose_model(const SeparatedSource& source, double tolerance);
 
 }  // namespace spectrace
