@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-#include "cli/choice.h"
+#include "cli/option_values.h"
 #include "core/base/json.h"
 
 namespace spectrace::cli {

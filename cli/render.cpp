@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "cli/aovs_option.h"
-#include "cli/choice.h"
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/effects_option.h"
 #include "cli/grid_option.h"
+#include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/quality.h"
 #include "cli/render_loop.h"
@@ -233,10 +233,10 @@ void add_sample_options(CLI::App& app, Arguments& arguments) {
   auto* spp = app.add_option("--spp", arguments.spp, "samples a pixel; default: the scene's")
                   ->check(CLI::Range(1, kMaxSpp));
   app.add_option("--time", arguments.seconds, "stop after so many seconds of rendering, all pixels alike")
-      ->check(CLI::PositiveNumber);
+      ->check(seconds_above_zero());
   app.add_option("--noise", arguments.relative_error,
                  "stop at this relative error of the image, as its two halves tell (docs/aovs.md)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   app.add_option_function<std::string>(
          "--samples", [&arguments](const std::string& text) { arguments.samples = parse_samples(text); },
          "take samples FIRST:LAST of each pixel only (LAST is not among them) and write OUT.partial, for "
@@ -244,7 +244,7 @@ void add_sample_options(CLI::App& app, Arguments& arguments) {
       ->excludes(spp);
   app.add_option("--checkpoint", arguments.checkpoint_seconds,
                  "write OUT.partial every so many seconds, and at the end")
-      ->check(CLI::PositiveNumber);
+      ->check(seconds_above_zero());
   app.add_flag("--resume", arguments.resume,
                "go on with OUT.partial, if there is one, to the identical image");
 }
@@ -261,7 +261,7 @@ void add_separation_options(CLI::App& app, SceneSeparation& separation) {
       ->check(CLI::IsMember({"sun", "fresnel", "diffraction", "residual", "analytic", "auto"}));
   app.add_option("--tolerance", separation.tolerance,
                  "of --separate auto: share of the reflected light a model may get wrong")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(from_zero_to_one())
       ->capture_default_str();
   add_grid_option(app, separation.grid);
   app.add_flag("--paired", separation.paired,
@@ -281,7 +281,7 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
   take_one_of(app.add_option("--aov-names", arguments.output.names, "whose names the channels get"), names)
       ->default_str("arnold");
   app.add_option("--exposure", arguments.output.exposure, "factor on the PNG, not on the EXR")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   app.add_option_function<std::string>(
       "--tev", [&arguments](const std::string& text) { arguments.tev = parse_tev(text); },

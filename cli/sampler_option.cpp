@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "cli/choice.h"
+#include "cli/option_values.h"
 
 namespace spectrace::cli {
 

@@ -12,6 +12,7 @@
 
 #include "cli/command.h"
 #include "cli/grid_option.h"
+#include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/separation_cache.h"
 #include "core/base/cost.h"
@@ -163,7 +164,7 @@ void add_separate(CLI::App& app, Action& chosen) {
   command
       ->add_option("--tolerance", arguments->tolerance,
                    "of --model auto: share of the reflected light a model may get wrong")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(from_zero_to_one())
       ->capture_default_str();
   command
       ->add_option("--quality", arguments->quality,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/option_values.h"
 #include "core/base/error.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image.h"
@@ -93,7 +94,7 @@ void add_sheet(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   command->add_option("--exposure", arguments->exposure, "factor before the sRGB curve")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   command->add_option("--layer", arguments->layer, "RGB layer to show: beauty, diffuse, specular, ...")
       ->capture_default_str();

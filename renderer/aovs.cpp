@@ -54,6 +54,21 @@ constexpr std::array kNames{
     AovName{"crypto_material", with(&AovSet::crypto_material)},
 };
 
+/// What to ask for to get statistics of a layer: "halves" of "diffuse_a"; nothing for other names.
+std::string_view group_of_channel(std::string_view name) {
+  const auto is = [&](std::string_view layer, std::string_view suffix) {
+    return name.size() == layer.size() + suffix.size() && name.starts_with(layer) && name.ends_with(suffix);
+  };
+  for (const std::string_view layer : {"beauty", "diffuse", "specular"}) {
+    if (is(layer, "_a") || is(layer, "_b")) return "halves";
+    if (is(layer, "_variance")) return "variance";
+  }
+  for (const Feature feature : kFeatureList) {
+    if (is(feature_name(feature), "_variance")) return "feature_variance";
+  }
+  return {};
+}
+
 }  // namespace
 
 AovSet operator|(AovSet a, const AovSet& b) {
@@ -72,7 +87,9 @@ std::optional<std::string> add_aov(std::string_view name, AovSet& set) {
     }
     known.emplace_back(each.name);
   }
-  return fmt::format("there is no AOV \"{}\"{}", name, suggestion(name, known));
+  const std::string_view group = group_of_channel(name);
+  return fmt::format("there is no AOV \"{}\"{}", name,
+                     group.empty() ? suggestion(name, known) : fmt::format("; \"{}\" has it", group));
 }
 
 std::string_view feature_name(Feature feature) {

@@ -99,7 +99,7 @@ LeafRange RenderSession::next_pass(std::uint64_t begin) {
   if (options_.seconds > 0 && leaves_rendered_ > 0) {
     const double affordable = (options_.seconds - seconds_) / (seconds_ / leaves_rendered_);
     if (affordable < 1) return {begin, 0};
-    most = std::min(most, std::uint64_t(affordable));
+    most = std::uint64_t(std::min(double(most), affordable));
   }
   const auto has = double(begin - target.first);
   if (options_.relative_error > 0 && has > 0) {

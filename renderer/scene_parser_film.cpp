@@ -82,10 +82,10 @@ void parse_aovs(const JsonValue& json, SceneDesc& scene) {
       name.error(*problem);
     }
   };
-  if (json.is_string()) {
-    add(json);
-  } else {
+  if (json.is_array()) {
     for (const JsonValue& name : json.elements()) add(name);
+  } else {
+    add(json);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "cli/compare/limits.h"
 #include "cli/compare/page.h"
 #include "cli/compare/pictures.h"
+#include "cli/option_values.h"
 #include "cli/output.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -143,13 +144,13 @@ void add_metric_options(CLI::App& command, Arguments& arguments) {
   command
       .add_option("--data-range", options.data_range,
                   "peak of PSNR and L of SSIM; 0 = the reference's maximum")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   command.add_option("--epsilon", options.epsilon, "added to the squared reference in relMSE")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   command.add_option("--mape-floor", options.mape_floor, "added to the reference in MAPE")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
 }
 
@@ -162,25 +163,20 @@ void add_z_test_options(CLI::App& command, Arguments& arguments) {
                   "of --z-test: chance that any test rejects an equal image; in (0, 1)")
       ->capture_default_str();
   command.add_option("--z-accepted", options.accepted, "of --z-test: share of pixels that must accept")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(from_zero_to_one())
       ->capture_default_str();
   command
       .add_option("--z-mean", options.mean_z,
                   "of --z-test: also fail where a channel's mean over the image is off by more than so many "
                   "standard errors; 0 = report it only")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
 }
 
 void check_numbers(const Arguments& arguments) {
-  const MetricOptions& m = arguments.settings.options;
-  const ZTestOptions& z = arguments.z_test;
-  for (const double x : {m.data_range, m.epsilon, m.mape_floor, z.alpha, z.accepted, z.mean_z}) {
-    // NaN passes ranges.
-    if (std::isnan(x)) throw CLI::ValidationError("compare", "NaN is no value for an option");
-  }
-  if (!(z.alpha > 0 && z.alpha < 1)) {
-    throw CLI::ValidationError("--z-alpha", fmt::format("{} is not in (0, 1)", z.alpha));
+  const double alpha = arguments.z_test.alpha;
+  if (!(alpha > 0 && alpha < 1)) {
+    throw CLI::ValidationError("--z-alpha", fmt::format("{} is not in (0, 1)", alpha));
   }
 }
 

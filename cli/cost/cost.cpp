@@ -12,6 +12,7 @@
 #include "cli/cost/measurement.h"
 #include "cli/cost/report.h"
 #include "cli/grid_option.h"
+#include "cli/option_values.h"
 
 namespace spectrace::cli {
 
@@ -61,7 +62,7 @@ void add_cost(CLI::App& app, Action& chosen) {
   command->add_option("scene", arguments->scene, "scene to render (.json)")->required();
   command->add_option("-o,--output", arguments->output, "folder of the report")->required();
   command->add_option("--budget", arguments->options.budget_seconds, "seconds to take")
-      ->check(CLI::PositiveNumber)
+      ->check(seconds_above_zero())
       ->capture_default_str();
   command->add_option("--reference", arguments->options.reference,
                       "picture (.exr) to take for the truth, instead of rendering one; must have R, G, B");

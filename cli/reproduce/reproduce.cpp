@@ -17,6 +17,7 @@
 #include "cli/command.h"
 #include "cli/console_progress.h"
 #include "cli/grid_option.h"
+#include "cli/option_values.h"
 #include "cli/report/exposure.h"
 #include "cli/reproduce/material_study.h"
 #include "cli/reproduce/reference_scene.h"
@@ -287,7 +288,7 @@ void add_reproduce(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(kMinQuality, kMaxQuality))
       ->capture_default_str();
   command->add_option("--tolerance", arguments->study.tolerance, "of the choice that --model auto would make")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(from_zero_to_one())
       ->capture_default_str();
   add_grid_option(*command, arguments->study.grid);
   command->add_option("--threads", arguments->study.pictures.threads, "threads to use, 0 = all cores")

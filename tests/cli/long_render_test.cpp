@@ -202,6 +202,37 @@ TEST_F(LongRender, ExplainsWhatSamplesMayBe) {
   expect_usage_error({"scene.json", "-o", "x.exr", "--aovs", "diffus"});
 }
 
+TEST_F(LongRender, ExplainsWhatNumbersAndNamesMayBe) {
+  // What none of them may be: CLI11 lets NaN pass.
+  for (const char* option : {"--time", "--noise", "--checkpoint", "--exposure", "--tolerance"}) {
+    for (const char* value : {"nan", "inf", "-1", "x"}) {
+      const ProgramResult result = run({"scene.json", "-o", "x.exr", option, value});
+      EXPECT_EQ(result.exit_code, 2) << option << ' ' << value;
+      EXPECT_TRUE(result.errors.starts_with(std::string(option) + ": " + value + " is not "))
+          << result.errors;
+    }
+  }
+  for (const char* option : {"--time", "--checkpoint"}) {
+    EXPECT_TRUE(run({"scene.json", "-o", "x.exr", option, "1e300"}).complains("at most 1e+09"));
+  }
+  EXPECT_TRUE(
+      run({"scene.json", "--aov-names", "x"}).complains("--aov-names: x not in {arnold,blender,kpcn}"));
+  EXPECT_TRUE(
+      run({"scene.json", "--sampler", "x"}).complains("--sampler: x not in {independent,owen-sobol}"));
+  EXPECT_TRUE(run({"scene.json", "--aovs", "diffuse_a"}).complains("\"diffuse_a\"; \"halves\" has it"));
+  EXPECT_TRUE(run({"scene.json", "--aovs", "beauty_variance"}).complains("; \"variance\" has it"));
+  EXPECT_TRUE(run({"scene.json", "--aovs", "normal_variance"}).complains("; \"feature_variance\" has it"));
+  EXPECT_TRUE(run({"scene.json", "--aovs", "norml"}).complains("did you mean \"normal\"?"));
+}
+
+TEST_F(LongRender, EndsNoSoonerForATimeThatNeverComes) {
+  std::string scene = read_text(folder_ / "scene.json");
+  scene.insert(1, R"("quality": {"seconds": 1e300}, )");
+  write_text(folder_ / "scene.json", scene);
+  ASSERT_EQ(render("all.exr").exit_code, 0);
+  EXPECT_EQ(std::get<std::int64_t>(read_metadata(folder_ / "all.exr").at("spectrace:spp")), 96);
+}
+
 TEST_F(LongRender, NamesChannelsAsOthersDo) {
   ASSERT_EQ(render("blender.exr", {"--spp", "8", "--aov-names", "blender"}).exit_code, 0);
   const Image blender = read_image(folder_ / "blender.exr");
