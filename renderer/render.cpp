@@ -20,6 +20,7 @@ namespace spectrace {
 namespace {
 
 constexpr const char* kStage = "rendering";  // what progress is told of
+constexpr double kMostTileSeconds = 2;       // a signal, a checkpoint and a time wait for the tiles under way
 
 const Kernel& kernel_for(const Features& needed, const std::string& name) {
   if (name.empty()) {
@@ -92,7 +93,7 @@ RenderSession::RenderSession(const Scene& scene, const RenderOptions& options, F
 RenderSession::~RenderSession() = default;
 
 /// As many leaves as there are already, so that there is always a whole image, and few passes; no more than
-/// the error asked for seems to take. Its length changes no bit.
+/// the error asked for seems to take, or a tile's time allows. Its length changes no bit.
 LeafRange RenderSession::next_pass(std::uint64_t begin) {
   const LeafRange target = film_.target().leaves();
   std::uint64_t most = std::min(target.end() - begin, std::max<std::uint64_t>(1, begin - target.first));
@@ -100,6 +101,10 @@ LeafRange RenderSession::next_pass(std::uint64_t begin) {
     const double affordable = (options_.seconds - seconds_) / (seconds_ / leaves_rendered_);
     if (affordable < 1) return {begin, 0};
     most = std::uint64_t(std::min(double(most), affordable));
+  }
+  if (leaves_rendered_ > 0) {
+    const double tile_seconds = seconds_ * threads_ / (leaves_rendered_ * double(film_.tiles().size()));
+    most = std::uint64_t(std::clamp(kMostTileSeconds / tile_seconds, 1.0, double(most)));
   }
   const auto has = double(begin - target.first);
   if (options_.relative_error > 0 && has > 0) {
