@@ -225,14 +225,6 @@ TEST_F(LongRender, ExplainsWhatNumbersAndNamesMayBe) {
   EXPECT_TRUE(run({"scene.json", "--aovs", "norml"}).complains("did you mean \"normal\"?"));
 }
 
-TEST_F(LongRender, EndsNoSoonerForATimeThatNeverComes) {
-  std::string scene = read_text(folder_ / "scene.json");
-  scene.insert(1, R"("quality": {"seconds": 1e300}, )");
-  write_text(folder_ / "scene.json", scene);
-  ASSERT_EQ(render("all.exr").exit_code, 0);
-  EXPECT_EQ(std::get<std::int64_t>(read_metadata(folder_ / "all.exr").at("spectrace:spp")), 96);
-}
-
 TEST_F(LongRender, NamesChannelsAsOthersDo) {
   ASSERT_EQ(render("blender.exr", {"--spp", "8", "--aov-names", "blender"}).exit_code, 0);
   const Image blender = read_image(folder_ / "blender.exr");

@@ -60,6 +60,13 @@ void expect_same(const Film& a, const Film& b) {
   EXPECT_EQ(a.resolve_spectral(Layer::kSpecular).data, b.resolve_spectral(Layer::kSpecular).data);
 }
 
+TEST_F(PartialRenders, EndNoSoonerForATimeThatNeverComes) {
+  scene_.emplace(build_scene(description_, progress_));
+  RenderSession session(*scene_, {.spp = 64, .seconds = 1e300});
+  session.finish(progress_);
+  EXPECT_EQ(session.report().samples.last, 64U);
+}
+
 TEST_F(PartialRenders, ComeBackAsTheyWereWritten) {
   const PartialRender partial = part(8, 24, 5);
   const PartialRender read = read_partial(written("a.partial", partial));
