@@ -29,6 +29,20 @@ const std::vector<MtlMaterial>& MaterialLibraries::library(const std::filesystem
   return read_.emplace(file, read_mtl(file)).first->second;
 }
 
+std::vector<std::filesystem::path> MaterialLibraries::files() const {
+  std::vector<std::filesystem::path> files;
+  for (const auto& [file, all] : read_) {
+    files.push_back(file);
+    for (const MtlMaterial& mtl : all) {
+      if (!found_.contains({file, mtl.name})) continue;
+      for (const std::filesystem::path& map : {mtl.diffuse_map, mtl.opacity_map, mtl.normal_map}) {
+        if (!map.empty()) files.push_back(map);
+      }
+    }
+  }
+  return files;
+}
+
 MaterialLibraries::Found MaterialLibraries::add(const MtlMaterial& mtl,
                                                 const std::filesystem::path& library) {
   const Found found{std::uint32_t(first_index_ + materials.size()), to_emission(mtl)};

@@ -30,6 +30,9 @@ class MaterialLibraries {
   Found find(const std::string& name, const std::vector<std::filesystem::path>& libraries,
              const std::filesystem::path& obj_file);
 
+  /// Libraries read, and the images that materials made of them name.
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
+
   std::vector<MaterialDesc> materials;
   std::vector<std::string> short_names;  ///< theirs, without folders: the same wherever the scene lies
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -78,6 +79,7 @@ std::string header_text(const PartialRender& partial) {
   json.member("program", partial.identity.program);
   json.member("scene_sha256", partial.identity.scene_sha256);
   write_names(json, "material_sha256s", partial.identity.material_sha256s);
+  write_names(json, "file_sha256s", partial.identity.file_sha256s);
   write_names(json, "approximations", partial.identity.approximations);
   json.member("seed", std::to_string(partial.identity.seed));
   json.member("sampler", sampler_name(partial.identity.sampler));
@@ -179,6 +181,7 @@ Header read_header(const std::string& text, const std::string& file) {
   header.identity = {.program = root.require("program").string(),
                      .scene_sha256 = root.require("scene_sha256").string(),
                      .material_sha256s = read_texts(root.require("material_sha256s")),
+                     .file_sha256s = read_texts(root.require("file_sha256s")),
                      .approximations = read_texts(root.require("approximations")),
                      .seed = read_seed(root.require("seed")),
                      .sampler = read_sampler(root.require("sampler"))};
@@ -275,6 +278,13 @@ void check_whole(const TensorFile& in) {
     throw InputError(in.file_name(), "", "is damaged: its content is not what was written");
 }
 
+/// The file of the first line, "file: digest", that only one of two sorted lists has.
+std::string first_difference(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  std::vector<std::string> only;
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(only));
+  return only.empty() ? "file" : only.front().substr(0, only.front().rfind(": "));
+}
+
 std::string describe(const std::vector<std::string>& approximations) {
   return approximations.empty() ? "exact" : fmt::format("{}", fmt::join(approximations, "; "));
 }
@@ -285,6 +295,7 @@ RenderIdentity identity_of(const Scene& scene, std::uint64_t seed) {
   return {.program = fmt::format("{} ({})", version(), commit()),
           .scene_sha256 = scene.sha256,
           .material_sha256s = scene.material_sha256s,
+          .file_sha256s = scene.file_sha256s,
           .approximations = scene.approximations,
           .seed = seed,
           .sampler = scene.sampler};
@@ -356,7 +367,11 @@ void check_same_image(const PartialRender& partial, const fs::path& file, const 
   if (found.scene_sha256 != wanted.scene_sha256)
     refuse("is of another scene, or the scene has changed since");
   if (found.material_sha256s != wanted.material_sha256s) {
-    refuse("is of other materials, or their files have changed since");
+    refuse("is of other materials or models of them, or their files have changed since");
+  }
+  if (found.file_sha256s != wanted.file_sha256s) {
+    refuse(fmt::format("is of another {}, or it has changed since",
+                       first_difference(found.file_sha256s, wanted.file_sha256s)));
   }
   if (found.approximations != wanted.approximations) {
     refuse(fmt::format("is {}, not {}", describe(found.approximations), describe(wanted.approximations)));

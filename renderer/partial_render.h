@@ -18,7 +18,7 @@ namespace spectrace {
 struct RenderIdentity {
   std::string program;  ///< version and commit
   std::string scene_sha256;
-  std::vector<std::string> material_sha256s;
+  std::vector<std::string> material_sha256s, file_sha256s;  ///< as a Scene's
   std::vector<std::string> approximations;
   std::uint64_t seed = 0;
   SamplerKind sampler = SamplerKind::kOwenSobol;

@@ -40,6 +40,7 @@ Metadata provenance(const Scene& scene, const RenderOptions& options, const Rend
       {"spectrace:sceneFile", scene.file_name},
       {"spectrace:sceneSha256", scene.sha256},
       {"spectrace:materialSha256s", fmt::format("{}", fmt::join(scene.material_sha256s, "; "))},
+      {"spectrace:fileSha256s", fmt::format("{}", fmt::join(scene.file_sha256s, "; "))},
       {"spectrace:cropWindow", fmt::format("{} {} {} {} of {} x {}", window.x, window.y, window.width,
                                            window.height, scene.film.width, scene.film.height)},
       {"spectrace:seed", std::to_string(options.seed)},  // text: 64 unsigned bits fit no other attribute

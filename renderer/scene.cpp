@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <type_traits>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -45,11 +47,43 @@ void check_camera(const SceneDesc& scene) {
   }
 }
 
-void add_digest(const MaterialDesc& material, const std::string& name, std::vector<std::string>& digests) {
+/// Of the files a scene is read from, each read once for it.
+class FileDigests {
+ public:
+  const std::string& of(const std::filesystem::path& file) {
+    const auto [at, is_new] = digests_.try_emplace(file.lexically_normal());
+    if (is_new) at->second = sha256_hex(read_file(file));
+    return at->second;
+  }
+  /// By name alone: the same wherever the scene lies.
+  [[nodiscard]] std::vector<std::string> list() const {
+    std::vector<std::string> lines;
+    for (const auto& [file, digest] : digests_) {
+      lines.push_back(fmt::format("{}: {}", file.filename().string(), digest));
+    }
+    std::sort(lines.begin(), lines.end());
+    return lines;
+  }
+
+ private:
+  std::map<std::filesystem::path, std::string> digests_;
+};
+
+/// The model too, which the command line may choose.
+std::string model_text(const SeparatedDesc& separated) {
+  if (separated.analytic) return " (analytic)";
+  return separated.model ? fmt::format(" ({})", name_of(*separated.model)) : "";
+}
+
+void add_digest(const MaterialDesc& material, const std::string& name, FileDigests& files,
+                std::vector<std::string>& digests) {
   std::visit(
       [&](const auto& kind) {
         if constexpr (requires { kind.file; }) {
-          digests.push_back(fmt::format("{}: {}", name, sha256_hex(read_file(kind.file))));
+          std::string line = fmt::format("{}: {}", name, files.of(kind.file));
+          if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, SeparatedDesc>) line += model_text(kind);
+          if (!kind.directions.empty()) line += " with the directions of " + files.of(kind.directions);
+          digests.push_back(line);
         }
       },
       material.kind);
@@ -176,6 +210,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   std::vector<std::string> material_names;
   std::vector<Float> measured_cosines;
   std::vector<std::optional<Lobe>> only_lobes;
+  FileDigests files;
   std::vector<std::string> digests;
   bool holes = false;
   const auto add_material = [&](const MaterialDesc& material) {
@@ -185,7 +220,8 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
     measured_cosines.push_back(last_measured_cosine(materials.back()));
     only_lobes.push_back(only_lobe(materials.back()));
     holes |= has_holes(materials.back());
-    for_each_desc(material, [&](const MaterialDesc& part) { add_digest(part, material.name, digests); });
+    for_each_desc(material,
+                  [&](const MaterialDesc& part) { add_digest(part, material.name, files, digests); });
   };
   for (const MaterialDesc& material : description.materials) {
     add_material(material);
@@ -193,6 +229,8 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   ShapeBuilder shapes(description, progress);
   shapes.build();
   for (const MaterialDesc& material : shapes.libraries.materials) add_material(material);
+  for (const std::filesystem::path& file : description.files) files.of(file);
+  for (const std::filesystem::path& file : shapes.libraries.files()) files.of(file);
   material_names.insert(material_names.end(), shapes.libraries.short_names.begin(),
                         shapes.libraries.short_names.end());
   for (Shape& shape : shapes.geometry.shapes) shape.needs_uv = is_textured(materials[shape.material]);
@@ -211,6 +249,7 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
   return Scene{.file_name = description.file_name,
                .sha256 = description.sha256,
                .material_sha256s = std::move(digests),
+               .file_sha256s = files.list(),
                .wavelengths =
                    visible ? WavelengthDistribution::visible(description.range, power) : evenly(description),
                .camera = Camera(description.camera, description.film),

@@ -19,8 +19,10 @@ namespace spectrace {
 /// Never changed after build_scene(); shared between threads.
 struct Scene {
   std::string file_name;
-  std::string sha256;                         ///< of the JSON text
-  std::vector<std::string> material_sha256s;  ///< "name: digest" of each material file read
+  std::string sha256;  ///< of the JSON text
+  std::vector<std::string>
+      material_sha256s;  ///< "name: digest" of each material file read, and the model it is read for
+  std::vector<std::string> file_sha256s;  ///< "file name: digest" of all files that were read, sorted
   WavelengthDistribution wavelengths;
   Camera camera;
   FilmDesc film;

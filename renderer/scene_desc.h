@@ -129,7 +129,8 @@ struct QualityDesc {
 
 struct SceneDesc {
   std::string file_name;
-  std::string sha256;  ///< of the JSON text
+  std::string sha256;                          ///< of the JSON text
+  std::vector<std::filesystem::path> files{};  ///< that it names
   WavelengthRange range;
   bool visible_sampling = true;  ///< draw wavelengths by what a pixel sees of the lights; false: uniformly
   CameraDesc camera;

@@ -217,6 +217,7 @@ SceneDesc parse_scene(const std::string& text, const std::filesystem::path& file
     root.error("expected a scene: an object with \"camera\", \"shapes\", ...");
   }
   document.throw_if_wrong();
+  scene.files = document.files();
   return scene;
 }
 

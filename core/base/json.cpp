@@ -218,7 +218,7 @@ std::filesystem::path JsonValue::path() const {
     expected("a file name");
     return {};
   }
-  return std::filesystem::path(state_->file_name).parent_path() / name;
+  return state_->files.emplace_back(std::filesystem::path(state_->file_name).parent_path() / name);
 }
 
 void JsonValue::expected(std::string_view what, std::string_view hint) const {
@@ -263,6 +263,8 @@ JsonDocument::~JsonDocument() = default;
 
 JsonValue JsonDocument::root() { return {state_.get(), state_->root}; }
 const std::string& JsonDocument::file_name() const { return state_->file_name; }
+const std::vector<std::filesystem::path>& JsonDocument::files() const { return state_->files; }
+
 const std::vector<Diagnostic>& JsonDocument::diagnostics() const { return state_->diagnostics; }
 void JsonDocument::throw_if_wrong() const { state_->throw_if_wrong(); }
 

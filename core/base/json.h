@@ -111,6 +111,8 @@ class JsonDocument {
   [[nodiscard]] const std::string& file_name() const;
   /// All diagnostics so far, ordered by place; the first kMaxDiagnostics of them that were found.
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const;
+  /// Every file that JsonValue::path() has been asked for so far.
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const;
   /// Throws InputError with all of them, if there is any.
   void throw_if_wrong() const;
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -42,6 +43,8 @@ struct JsonState {
   std::vector<Diagnostic> diagnostics;  ///< ordered by place
   std::vector<std::size_t> offsets;     ///< of each diagnostic
   std::size_t unlisted = 0;             ///< found beyond kMaxDiagnostics
+
+  std::vector<std::filesystem::path> files;  ///< that values named, in the order they were asked for
 
   /// "41:18": counted from 1, the column in characters.
   [[nodiscard]] std::string line_and_column(std::size_t offset) const;

@@ -151,6 +151,55 @@ TEST_F(LongRender, MergeRefusesWhatIsNotOneImage) {
   EXPECT_EQ(read_text(folder_ / "whole.exr"), "what was there");
 }
 
+/// A file that the scene names, before and after a change that the renderer reads.
+struct ChangedFile {
+  const char* file;
+  std::string before, after;
+  const char* material;
+  const char* shape;
+};
+
+TEST_F(LongRender, MergeAndResumeRefuseFilesThatHaveChanged) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", red = "400 0.1\n700 0.5\n";
+  const std::vector<ChangedFile> cases{
+      {"mesh.obj", triangle, "v 0 0 0.1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", R"("reflectance": 0.5)",
+       R"({"type": "mesh", "file": "mesh.obj", "material": "m"})"},
+      {"red.spd", red, "400 0.2\n700 0.5\n", R"("reflectance": {"file": "red.spd"})",
+       R"({"type": "sphere", "material": "m"})"},
+  };
+  for (const ChangedFile& c : cases) {
+    write_text(folder_ / "scene.json", std::string(R"({"camera": {"origin": [0, -4, 1], "target": [0, 0, 0]},
+      "film": {"width": 8, "height": 6}, "materials": [{"name": "m", "type": "lambert", )") +
+                                           c.material + R"(}], "shapes": [)" + c.shape +
+                                           R"(], "lights": [{"type": "environment", "radiance": 1}]})");
+    write_text(folder_ / c.file, c.before);
+    ASSERT_EQ(render("a.exr", {"--samples", "0:8"}).exit_code, 0) << c.file;
+    ASSERT_EQ(render("part.exr", {"--spp", "8", "--checkpoint", "60"}).exit_code, 0);
+    write_text(folder_ / c.file, c.after);
+    ASSERT_EQ(render("b.exr", {"--samples", "8:16"}).exit_code, 0);
+    const std::string problem = std::string("is of another ") + c.file;
+    expect_bad_input({"merge", "a.partial", "b.partial", "-o", "whole.exr"}, "b.partial: " + problem);
+    expect_bad_input({"scene.json", "-o", "part.exr", "--spp", "16", "--resume"}, "part.partial: " + problem);
+  }
+}
+
+TEST_F(LongRender, MergeAndResumeRefuseAnotherModel) {
+  write_measured("measured.bsdf");
+  write_text(folder_ / "scene.json", R"({"camera": {"origin": [0, -4, 1], "target": [0, 0, 0]},
+    "film": {"width": 8, "height": 6}, "materials": [{"name": "m", "type": "measured", "file": "measured.bsdf"}],
+    "shapes": [{"type": "sphere", "material": "m"}], "lights": [{"type": "environment", "radiance": 1}]})");
+  const auto by = [](const char* samples, const char* model) {
+    return std::vector<std::string>{"--samples", samples,    "--separate", model,
+                                    "--grid",    "24x20x30", "--cache",    "cache"};
+  };
+  ASSERT_EQ(render("sun.exr", by("0:8", "sun")).exit_code, 0);
+  ASSERT_EQ(render("fresnel.exr", by("8:16", "fresnel")).exit_code, 0);
+  ASSERT_EQ(render("same.exr", by("8:16", "sun")).exit_code, 0);
+  expect_bad_input({"merge", "sun.partial", "fresnel.partial", "-o", "whole.exr"},
+                   "fresnel.partial: is of other materials or models");
+  EXPECT_EQ(run({"merge", "sun.partial", "same.partial", "-o", "whole.exr"}).exit_code, 0);
+}
+
 TEST_F(LongRender, ResumesToMoreSamplesButNotInAnotherScene) {
   ASSERT_EQ(render("whole.exr").exit_code, 0);
   ASSERT_EQ(render("part.exr", {"--spp", "32", "--checkpoint", "60"}).exit_code, 0);
