@@ -142,7 +142,10 @@ void print_summary(const fs::path& file, const Scene& scene, const Film& film, c
   if (scene.quality.is_asked()) {
     fmt::print("quality {}: {} samples a pixel\n", text_of(scene.quality), report.samples.count());
   }
-  if (film.layout().aovs.halves) fmt::print("relative error: {:.3g}\n", film.relative_error());
+  if (film.layout().aovs.halves) {
+    const double error = film.relative_error();
+    fmt::print("relative error: {}\n", std::isfinite(error) ? fmt::format("{:.3g}", error) : "unknown");
+  }
   if (report.extrapolated_share > 0) {
     fmt::print("extrapolated: {:.2g} % of the measured values seen lie beyond the last measured elevation\n",
                100 * report.extrapolated_share);
@@ -193,6 +196,7 @@ ExitCode render_command(Arguments arguments) {
                        if (view->wants_picture()) view->show(session.film().resolve());
                      }});
   }
+  const SignalWatch watch;
   const bool is_done = run(session, tasks, progress);
   if (view) view->finish(session.film().resolve());
 

@@ -21,31 +21,21 @@ extern "C" void ask_to_stop(int signal) {
   std::signal(signal, SIG_DFL);  // the next one is not to be caught
 }
 
-/// Signals ask for an end while this lives.
-class SignalWatch {
- public:
-  SignalWatch()
-      : interrupt_(std::signal(SIGINT, ask_to_stop)), terminate_(std::signal(SIGTERM, ask_to_stop)) {}
-  ~SignalWatch() {
-    std::signal(SIGINT, interrupt_);
-    std::signal(SIGTERM, terminate_);
-  }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
-
- private:
-  using Handler = void (*)(int);
-  Handler interrupt_, terminate_;
-};
-
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
 
 }  // namespace
 
+SignalWatch::SignalWatch()
+    : interrupt_(std::signal(SIGINT, ask_to_stop)), terminate_(std::signal(SIGTERM, ask_to_stop)) {}
+
+SignalWatch::~SignalWatch() {
+  std::signal(SIGINT, interrupt_);
+  std::signal(SIGTERM, terminate_);
+}
+
 bool run(RenderSession& session, const std::vector<Recurring>& tasks, Progress& progress) {
-  const SignalWatch watch;
   std::vector<Clock::time_point> due;
   for (const Recurring& task : tasks) due.push_back(Clock::now() + seconds(task.every_seconds));
   for (;;) {

@@ -15,8 +15,21 @@ struct Recurring {
   std::function<void()> action;
 };
 
-/// Renders until all is done or SIGINT or SIGTERM comes; a second signal ends the program at once. True:
-/// done.
+/// Signals ask for an end while this lives, instead of ending the program: from the first sample to the last
+/// file written. A second signal ends the program at once.
+class SignalWatch {
+ public:
+  SignalWatch();
+  ~SignalWatch();
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+ private:
+  using Handler = void (*)(int);
+  Handler interrupt_, terminate_;
+};
+
+/// Renders until all is done or SIGINT or SIGTERM comes, under a SignalWatch. True: done.
 bool run(RenderSession& session, const std::vector<Recurring>& tasks, Progress& progress);
 
 }  // namespace spectrace::cli

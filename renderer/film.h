@@ -87,7 +87,8 @@ class Film {
   [[nodiscard]] std::uint64_t invalid_samples() const;
   /// How far the beauty is off by its noise, as its halves A and B tell: sqrt(mean(((A - B) / 2)² / (M² +
   /// m²))) over pixels and R, G, B, where M is the pixel's mean and m a tenth of the image's: the root of
-  /// relMSE with an epsilon of m². The layout must have halves.
+  /// relMSE with an epsilon of m². Infinity where half B is empty: of one sample. The layout must have
+  /// halves.
   [[nodiscard]] double relative_error() const;
 
   /// One block of every tile.

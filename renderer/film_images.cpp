@@ -231,16 +231,22 @@ double Film::relative_error() const {
   });
   const double image_mean = sum / numbers, epsilon = kRelativeEpsilon * image_mean * image_mean;
   double squares = 0;
+  bool is_known = false;
   for_each_total([&](std::size_t, const PixelTotal& total) {
+    if (!(total.valid_b > 0 && total.valid > total.valid_b)) return;
+    is_known = true;
     const auto moment = std::size_t(Layer::kBeauty);
     const Rgb mean = rgb_of(total, Layer::kBeauty);
     const Rgb a = rgb_of_half_a(total, moment), b = rgb_of_half_b(total, moment);
+    // Of halves of na and nb samples: (a - b)² has 1 / na + 1 / nb of a sample's variance, their mean 1 / (na
+    // + nb).
+    const double scale = std::sqrt((total.valid - total.valid_b) * total.valid_b) / total.valid;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double d = (a[c] - b[c]) / 2;
+      const double d = (a[c] - b[c]) * scale;
       if (d != 0) squares += d * d / (mean[c] * mean[c] + epsilon);
     }
   });
-  return std::sqrt(squares / numbers);
+  return is_known ? std::sqrt(squares / numbers) : std::numeric_limits<double>::infinity();
 }
 
 Image Film::resolve_spectral(Layer layer) const {

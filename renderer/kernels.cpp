@@ -161,12 +161,13 @@ class Pack {
 
   /// `mattes`: of the pixel; those that the layout does not have stay empty.
   void finish(LeafSums<kFeatures>& sums, [[maybe_unused]] PixelMattes& mattes) {
-    std::uint64_t sample = 0;
+    std::size_t sample = 0;
+    const std::size_t first_in_b = paths_.size() - samples_in_half_b({0, 1}, paths_.size());
     for (auto& path : paths_) {
       const auto& value = path.finish();
       counts_.measured += value.measured;
       counts_.extrapolated += value.extrapolated;
-      add_to<kFeatures>(sums, value, job_.layout, sample++ >= kLeafSamples / 2);
+      add_to<kFeatures>(sums, value, job_.layout, sample++ >= first_in_b);
       if constexpr (kFeatures.more_aovs) add_to_mattes(mattes, value);
     }
     paths_.clear();

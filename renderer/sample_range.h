@@ -38,8 +38,10 @@ struct LeafRange {
 
 /// Samples of a block, of `samples` that are in it, that make up its half B: its right half. Even and odd
 /// samples would lie in opposite halves of every dimension of the Sobol' sequence, and so be two different
-/// pictures; the halves of a block are as even as the block.
+/// pictures; the halves of a block are as even as the block. Of a single leaf that is not full the later
+/// half.
 [[nodiscard]] constexpr std::uint64_t samples_in_half_b(LeafRange block, std::uint64_t samples) {
+  if (block.count == 1) return samples / 2;
   const std::uint64_t left = block.count * kLeafSamples / 2;
   return samples > left ? samples - left : 0;
 }

@@ -105,6 +105,10 @@ std::vector<std::byte> read_file(const fs::path& file, std::size_t max_bytes) {
   struct stat info {};
   if (::fstat(in.get(), &info) != 0) system_error(file, "cannot read", errno);
   if (S_ISDIR(info.st_mode)) throw InputError(file.string(), "", "cannot read: it is a folder");
+  // Some, like /dev/zero, never end.
+  if (S_ISCHR(info.st_mode) && ::isatty(in.get()) == 0) {
+    throw InputError(file.string(), "", "cannot read: it is a device");
+  }
   const auto too_large = [&] {
     return InputError(file.string(), "", fmt::format("larger than the {} bytes read at most", max_bytes));
   };

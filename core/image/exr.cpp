@@ -15,6 +15,7 @@
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfVersion.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -110,6 +111,9 @@ auto with_exr(std::span<const std::byte> bytes, const std::string& file, Decode 
   try {
     MemoryIn stream(bytes);
     Imf::InputFile in(stream);
+    // Only the first would be read, and nobody would hear of the others.
+    if (Imf::isMultiPart(in.version()))
+      throw InputError(file, "", "has several parts; images of one part are read");
     return decode(in);
   } catch (const InputError&) {
     throw;

@@ -17,6 +17,15 @@ class CompareLayers : public CompareProgram {};
 
 const std::vector<std::string> kTwoLayers{"R", "G", "B", "specular.R", "specular.G", "specular.B"};
 
+TEST_F(CompareLayers, RefusesImagesOfSeveralParts) {
+  const std::string one = file("one.exr", constant(0.5f, kTwoLayers));
+  const std::string bad = file("bad.exr", constant(std::numeric_limits<float>::quiet_NaN(), kTwoLayers));
+  const ProgramResult joined =
+      run_program("/usr/bin/env", {"oiiotool", one, bad, "--siappend", "-o", "parts.exr"}, folder_.path());
+  ASSERT_EQ(joined.exit_code, 0) << joined.errors;  // OpenImageIO's own program
+  expect_bad_input({"compare", one, "parts.exr"}, "parts.exr: has several parts");
+}
+
 TEST_F(CompareLayers, LimitsMayDifferByLayer) {
   Image other = constant(0.5f, kTwoLayers);
   for (int x = 0; x < other.width; ++x) other.at(x, 0, 4) = 0;  // mae: 0.5 / 16 / 3 of the specular layer

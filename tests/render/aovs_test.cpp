@@ -175,6 +175,29 @@ TEST(Aovs, HalvesDifferByNoiseAlone) {
   EXPECT_LT(many, few / 3) << "1/4 where samples were independent, less where they are even";
 }
 
+TEST(Aovs, HalvesShareWhateverSamplesThereAre) {
+  const SceneDesc description = lit_floor();
+  const auto render_with_halves = [&](int spp) {
+    SilentProgress progress;
+    const Scene scene = build_scene(description, progress);
+    RenderSession session(scene, {.spp = spp, .aovs = kAllAovs});
+    session.finish(progress);
+    return std::pair(session.film().resolve(), session.film().relative_error());
+  };
+  EXPECT_TRUE(std::isinf(render_with_halves(1).second)) << "one sample tells nothing of its noise";
+  // In half B: of a leaf that is not full its later half, else the right half of the block.
+  for (const auto& [spp, in_b] : {std::pair{2, 1}, {4, 2}, {5, 2}, {7, 3}, {8, 4}, {12, 4}, {16, 8}}) {
+    const auto [image, error] = render_with_halves(spp);
+    EXPECT_GT(error, 0);
+    EXPECT_LT(error, 1);
+    for_each_pixel(image, [&, spp = spp, in_b = in_b](const Pixel& at) {
+      const double a = at("beauty_a.G"), b = at("beauty_b.G"), whole = at("G");
+      EXPECT_GT(b, 0) << spp;
+      EXPECT_NEAR((a * (spp - in_b) + b * in_b) / spp, whole, 1e-5 * whole) << spp;
+    });
+  }
+}
+
 TEST(Aovs, DirectLightIsAllThereIsWithoutBounces) {
   SceneDesc description = lit_floor();
   description.integrator.max_depth = 1;

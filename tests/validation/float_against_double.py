@@ -55,12 +55,16 @@ def render(program: pathlib.Path, scene: pathlib.Path, spp: int, output: pathlib
 
 
 def psnr(program: pathlib.Path, reference: pathlib.Path, test: pathlib.Path, folder: pathlib.Path) -> dict[str, float | None]:
-    """dB by layer; None where a layer is empty in the reference, or nothing differs."""
+    """dB by layer; None where a layer is the same in both, as an empty one is. What is not finite ends the program."""
     report = folder / "compare.json"
     done = subprocess.run([program, "compare", reference, test, "--json", report], stdout=subprocess.DEVNULL, check=False)
     if done.returncode not in (0, 1):
         sys.exit(f"cannot compare {reference} and {test}: exit code {done.returncode}")
-    return {layer["layer"]: layer["psnr"] for layer in json.loads(report.read_text())["layers"]}
+    layers = json.loads(report.read_text())["layers"]
+    for layer in layers:
+        if not layer["finite"] or (layer["psnr"] is None and layer["mse"] != 0):
+            sys.exit(f"{test.name}: {layer['layer']} is not finite")
+    return {layer["layer"]: layer["psnr"] for layer in layers}
 
 
 def main() -> int:
@@ -85,7 +89,9 @@ def main() -> int:
                 render(program, copy, arguments.spp, image)
             found = psnr(programs[0], images[1], images[0], folder)
             beauty = found.get("beauty")
-            if beauty is not None and beauty < BOUND_DB:
+            if beauty is None:
+                sys.exit(f"{scene.stem}: the same to the bit, so that both programs have one precision")
+            if beauty < BOUND_DB:
                 low.append(scene.stem)
             row = f"| `{scene.stem}` | " + " | ".join(
                 "-" if found.get(name) is None else f"{found[name]:.1f}" for name in LAYERS) + " |\n"

@@ -75,6 +75,8 @@ TEST(Sha256, AgreesWithPublishedDigests) {
             "2f3d335432c70b580af0e8e1b3674a7c020d683aa5f73aaaedfdc55af904c21c");
 }
 
+TEST(ReadFile, RefusesDevicesThatNeverEnd) { EXPECT_THROW(read_file("/dev/zero"), InputError); }
+
 TEST(ReadFile, ReturnsTheBytes) {
   const TemporaryFolder folder;
   write_text(folder / "f", std::string("a\0b", 3));
