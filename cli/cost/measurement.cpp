@@ -87,6 +87,14 @@ Image given_reference(const std::string& file, const CropWindow& window) {
                      fmt::format("has {} x {} pixels, the scene {} x {}", given.width, given.height,
                                  window.width, window.height));
   }
+  for (std::size_t i = 0; i < given.data.size(); ++i) {
+    if (std::isfinite(given.data[i])) continue;
+    const int pixel = int(i / given.channels.size());
+    throw InputError(
+        file, "",
+        fmt::format("is not finite in channel {} of pixel ({}, {})",
+                    given.channels[i % given.channels.size()], pixel % given.width, pixel / given.width));
+  }
   return given;
 }
 
@@ -213,6 +221,10 @@ class Measurement {
       render_reference();
     }
     parts_ = render_parts(scene_, kReferencePartSpp, kReferenceSeed + 2, options_.threads, progress_);
+    if (std::all_of(reference_.mean.data.begin(), reference_.mean.data.end(),
+                    [](float x) { return x == 0; })) {
+      throw InputError(scene_.file_name, "", "is black: there is no error to measure");
+    }
     study_.reference = reference_.mean;
     study_.exposure = reference_.exposure;
     study_.epsilon = reference_.metrics.epsilon;

@@ -2,6 +2,7 @@
 // `spectrace cost`: what is said of settings whose bias is known.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/base/json.h"
@@ -92,6 +93,18 @@ TEST_F(Cost, TakesAReferenceThatIsGiven) {
              read_text(folder_ / "ball.json").replace(read_text(folder_ / "ball.json").find("16"), 2, "12"));
   expect_bad_input({"cost", "small.json", "-o", "report", "--reference", "truth.exr"},
                    "truth.exr: has 16 x 16 pixels");
+}
+
+TEST_F(Cost, RefusesPicturesThatTellNothing) {
+  write_text(folder_ / "dark.json", R"({"camera": {"origin": [0, -4, 1], "target": [0, 0, 0]},
+    "film": {"width": 8, "height": 6}, "materials": [{"name": "m", "type": "lambert", "reflectance": 0.5}],
+    "shapes": [{"type": "sphere", "material": "m"}]})");
+  expect_bad_input({"cost", "dark.json", "-o", "report", "--budget", "2"}, "dark.json: is black");
+  Image truth(8, 6, {"R", "G", "B"});
+  truth.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+  write_exr(folder_ / "nan.exr", truth, {});
+  expect_bad_input({"cost", "dark.json", "-o", "report", "--budget", "2", "--reference", "nan.exr"},
+                   "nan.exr: is not finite in channel G of pixel (3, 2)");
 }
 
 TEST_F(Cost, RefusesWhatItCannotRead) {
