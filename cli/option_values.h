@@ -2,8 +2,6 @@
 // What options may be: names of an enumeration, numbers within bounds.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <limits>
 #include <map>
@@ -22,35 +20,11 @@ CLI::Option* take_one_of(CLI::Option* option, const std::map<std::string, Value>
   return option->type_name(listed);
 }
 
-/// `holds` of a number and nothing that is none. CLI11's own checks let NaN pass, and print the largest
-/// double digit by digit.
-template <typename Condition>
-CLI::Validator number_that(Condition holds, const std::string& is, const std::string& name) {
-  const auto check = [holds, is](const std::string& text) {
-    double x = 0;
-    const bool is_number = CLI::detail::lexical_cast(text, x);
-    return is_number && holds(x) ? std::string() : fmt::format("{} is not {}", text, is);
-  };
-  return CLI::Validator(check, name);
-}
-
-inline CLI::Validator above_zero(double most = std::numeric_limits<double>::max()) {
-  const std::string is = most < std::numeric_limits<double>::max()
-                             ? fmt::format("above 0 and at most {:g}", most)
-                             : "a number above 0";
-  return number_that([most](double x) { return x > 0 && x <= most; }, is, "POSITIVE");
-}
-
-inline CLI::Validator at_least_zero() {
-  return number_that([](double x) { return x >= 0 && x <= std::numeric_limits<double>::max(); },
-                     "a number of at least 0", "NONNEGATIVE");
-}
-
-inline CLI::Validator from_zero_to_one() {
-  return number_that([](double x) { return x >= 0 && x <= 1; }, "in [0, 1]", "in [0, 1]");
-}
-
-/// 31 years: clocks count their ticks in 64 bits.
-inline CLI::Validator seconds_above_zero() { return above_zero(1e9); }
+// Of numbers. CLI11's own checks let NaN pass, and print the largest double digit by digit.
+CLI::Validator above_zero(double most = std::numeric_limits<double>::max());
+CLI::Validator at_least_zero();
+CLI::Validator from_zero_to_one();
+/// At most 31 years: clocks count their ticks in 64 bits.
+CLI::Validator seconds_above_zero();
 
 }  // namespace spectrace::cli
