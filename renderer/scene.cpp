@@ -251,7 +251,8 @@ Scene build_scene(const SceneDesc& description, Progress& progress) {
                .material_sha256s = std::move(digests),
                .file_sha256s = files.list(),
                .wavelengths =
-                   visible ? WavelengthDistribution::visible(description.range, power) : evenly(description),
+                   (visible ? WavelengthDistribution::visible(description.range, power) : evenly(description))
+                       .carrying(description.lanes),
                .camera = Camera(description.camera, description.film),
                .film = description.film,
                .integrator = description.integrator,

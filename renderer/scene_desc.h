@@ -132,6 +132,7 @@ struct SceneDesc {
   std::string sha256;                          ///< of the JSON text
   std::vector<std::filesystem::path> files{};  ///< that it names
   WavelengthRange range;
+  int lanes = kLanes;            ///< different wavelengths of a path: 1, 2, 4 ... kLanes
   bool visible_sampling = true;  ///< draw wavelengths by what a pixel sees of the lights; false: uniformly
   CameraDesc camera;
   FilmDesc film;

@@ -37,6 +37,9 @@ void parse_spectrum_section(const JsonValue& json, SceneDesc& scene) {
     }
   }
   scene.visible_sampling = json.get("sampling").choice("visible", {"visible", "uniform"}) == "visible";
+  const JsonValue lanes = json.get("lanes");
+  scene.lanes = int(lanes.integer(kLanes, 1, kLanes));
+  if (kLanes % scene.lanes != 0) lanes.error(fmt::format("expected a divisor of {}", kLanes));
   json.reject_unknown_keys();
 }
 

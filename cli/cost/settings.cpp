@@ -45,6 +45,11 @@ Setting with_depth(int depth) {
           [depth](SceneDesc& scene, Progress&) { scene.integrator.max_depth = depth; }};
 }
 
+/// As many different wavelengths a path, drawn as the scene's own are.
+Setting with_lanes(int lanes) {
+  return {"hero lanes", std::to_string(lanes), [lanes](SceneDesc& scene, Progress&) { scene.lanes = lanes; }};
+}
+
 /// Paths carry the centres of so many bins and nothing else.
 Setting with_wavelengths(std::size_t count) {
   return {"wavelengths", std::to_string(count), [count](SceneDesc& scene, Progress&) {
@@ -85,6 +90,9 @@ std::vector<Setting> settings_of(const SceneDesc& scene, const SceneSeparation& 
   }
   for (const int depth : {1, 2, 4, 8}) {
     if (depth < scene.integrator.max_depth) settings.push_back(with_depth(depth));
+  }
+  for (const int lanes : {1, 2, 4}) {
+    if (lanes < scene.lanes) settings.push_back(with_lanes(lanes));
   }
   if (!scene.film.spectral) {
     for (const std::size_t count : {3, 8, 31, 64, 195}) settings.push_back(with_wavelengths(count));

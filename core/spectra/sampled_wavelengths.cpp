@@ -101,12 +101,19 @@ WavelengthDistribution WavelengthDistribution::visible(WavelengthRange range,
   return {range, density};
 }
 
+WavelengthDistribution WavelengthDistribution::carrying(int lanes) const {
+  SPECTRACE_CHECK(lanes >= 1 && kLanes % lanes == 0);
+  WavelengthDistribution result = *this;
+  result.step_ = kLanes / lanes;
+  return result;
+}
+
 SPECTRACE_WIDE SampledWavelengths WavelengthDistribution::sample(Float u) const {
   std::array<Float, kLanes> position{};
   for (int lane = 0; lane < kLanes; ++lane) {
     // Rotated in the unit interval, so that each lane on its own has this density: Wilkie et al. 2014,
     // sec. 3.
-    const Float rotated = u + Float(lane) / kLanes;
+    const Float rotated = u + Float(source_of(lane)) / kLanes;
     position[lane] = rotated < 1 ? rotated : rotated - 1;
   }
   return at(position);
@@ -117,8 +124,9 @@ SampledWavelengths WavelengthDistribution::sample(Float u, const std::array<Floa
   const Float within = u * kLanes - Float(stratum);
   std::array<Float, kLanes> position{};
   for (int lane = 0; lane < kLanes; ++lane) {
-    const Float moved = within + shifts[lane];
-    position[lane] = (Float((stratum + lane) % kLanes) + (moved < 1 ? moved : moved - 1)) / kLanes;
+    const int source = source_of(lane);
+    const Float moved = within + shifts[source];
+    position[lane] = (Float((stratum + source) % kLanes) + (moved < 1 ? moved : moved - 1)) / kLanes;
   }
   return at(position);
 }

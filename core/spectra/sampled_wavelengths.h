@@ -68,6 +68,10 @@ class WavelengthDistribution {
   static WavelengthDistribution visible(WavelengthRange range,
                                         const std::function<double(double)>& emission = {});
 
+  /// The same with `lanes` different wavelengths, 1, 2, 4 ... kLanes, each carried by as many lanes: as
+  /// unbiased, and as slow; what more of them are worth is seen by it.
+  [[nodiscard]] WavelengthDistribution carrying(int lanes) const;
+
   /// `u` in [0, 1).
   [[nodiscard]] SampledWavelengths sample(Float u) const;
   /// The same with each lane moved on by its share `shifts` in [0, 1) of its kLanes-th of the range, round
@@ -93,8 +97,12 @@ class WavelengthDistribution {
   WavelengthDistribution(WavelengthRange range, std::vector<Cell> cells)
       : range_(range), cells_(std::move(cells)) {}
 
+  /// The lane whose wavelength a lane carries.
+  [[nodiscard]] int source_of(int lane) const { return lane * step_ % kLanes; }
+
   WavelengthRange range_;
   std::vector<Cell> cells_;
+  int step_ = 1;  // lanes between two that differ
 };
 
 }  // namespace spectrace

@@ -40,6 +40,22 @@ TEST(Spectral, EmittersShowTheColourOfTheirSpectrum) {
   }
 }
 
+TEST(Spectral, FewerLanesShowTheSameColourWithMoreNoise) {
+  const Spectrum slope = TabulatedSpectrum({360, 830}, {0, 2});
+  double noise = 0;
+  for (const int lanes : {kLanes, 4, 2, 1}) {
+    SceneDesc scene = empty_scene();
+    scene.lanes = lanes;
+    scene.sampler = SamplerKind::kIndependent;
+    scene.lights = {EnvironmentDesc{.radiance = slope}};
+    const Image image = render_scene(scene, 1024).image;
+    expect_xyz(image, spectrum_to_xyz(slope, scene.range), "sky");
+    const double found = estimate_xyz(image, "", 0).standard_error;
+    EXPECT_GT(found, noise) << lanes << " lanes";
+    noise = found;
+  }
+}
+
 TEST(Spectral, ReflectancesMultiplyEmissions) {
   SceneDesc scene = empty_scene();
   scene.materials = {lambert("slope", TabulatedSpectrum({360, 830}, {0, 1}))};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -130,6 +131,28 @@ TEST(Wavelengths, EstimatesOfColourAgreeWithQuadrature) {
       }
     }
   }
+}
+
+TEST(Wavelengths, FewerLanesAreEvenlySpacedAndCarriedByAll) {
+  std::array<Float, kLanes> shifts{};
+  for (int lane = 0; lane < kLanes; ++lane) shifts[std::size_t(lane)] = Float(lane) / 16;
+  for (const WavelengthDistribution& whole : all_distributions()) {
+    for (const int lanes : {1, 2, 4, kLanes}) {
+      const WavelengthDistribution some = whole.carrying(lanes);
+      for (const Float u : {Float(0), Float(0.3), Float(0.99)}) {
+        for (const bool shifted : {false, true}) {
+          const SampledWavelengths all = shifted ? whole.sample(u, shifts) : whole.sample(u);
+          const SampledWavelengths few = shifted ? some.sample(u, shifts) : some.sample(u);
+          for (int lane = 0; lane < kLanes; ++lane) {
+            const int source = lane % lanes * (kLanes / lanes);
+            EXPECT_EQ(few.lambda_nm(lane), all.lambda_nm(source));
+            EXPECT_EQ(few.pdf_per_nm(lane), all.pdf_per_nm(source));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_THROW((void)WavelengthDistribution::uniform({}).carrying(3), InternalError);
 }
 
 TEST(Wavelengths, TerminationIsIdempotentAndKeepsTheHero) {
