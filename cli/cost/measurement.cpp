@@ -220,11 +220,11 @@ class Measurement {
     } else {
       render_reference();
     }
-    parts_ = render_parts(scene_, kReferencePartSpp, kReferenceSeed + 2, options_.threads, progress_);
     if (std::all_of(reference_.mean.data.begin(), reference_.mean.data.end(),
                     [](float x) { return x == 0; })) {
       throw InputError(scene_.file_name, "", "is black: there is no error to measure");
     }
+    parts_ = render_parts(scene_, kReferencePartSpp, kReferenceSeed + 2, options_.threads, progress_);
     study_.reference = reference_.mean;
     study_.exposure = reference_.exposure;
     study_.epsilon = reference_.metrics.epsilon;
