@@ -105,6 +105,7 @@ WavelengthDistribution WavelengthDistribution::carrying(int lanes) const {
   SPECTRACE_CHECK(lanes >= 1 && kLanes % lanes == 0);
   WavelengthDistribution result = *this;
   result.step_ = kLanes / lanes;
+  result.rotation_ = rotations(result.step_);
   return result;
 }
 
@@ -113,7 +114,7 @@ SPECTRACE_WIDE SampledWavelengths WavelengthDistribution::sample(Float u) const 
   for (int lane = 0; lane < kLanes; ++lane) {
     // Rotated in the unit interval, so that each lane on its own has this density: Wilkie et al. 2014,
     // sec. 3.
-    const Float rotated = u + Float(source_of(lane)) / kLanes;
+    const Float rotated = u + rotation_[lane];
     position[lane] = rotated < 1 ? rotated : rotated - 1;
   }
   return at(position);

@@ -102,7 +102,15 @@ class WavelengthDistribution {
 
   WavelengthRange range_;
   std::vector<Cell> cells_;
-  int step_ = 1;  // lanes between two that differ
+  int step_ = 1;                                       // lanes between two that differ
+  std::array<Float, kLanes> rotation_ = rotations(1);  // of each lane, in the unit interval
+
+  static constexpr std::array<Float, kLanes> rotations(int step) {
+    std::array<Float, kLanes> result{};
+    for (int lane = 0; lane < kLanes; ++lane)
+      result[std::size_t(lane)] = Float(lane * step % kLanes) / kLanes;
+    return result;
+  }
 };
 
 }  // namespace spectrace
