@@ -39,7 +39,7 @@ Float MicroRoughness::sample_radius(Float u, Float lambda_nm) const {
 
 Diffractive::Mix Diffractive::mix(Vec3 wo, const ShadingPoint& at) const {
   const SampledSpectrum specular = spectrace::reflectance(fresnel, wo.z, at.lambda) * specular_scale;
-  Mix m{.diffuse_albedo = reflectance.sample(at.lambda, at.uv, at.footprint) * diffuse_scale};
+  Mix m{.diffuse_albedo = diffuse_albedo(wo, at)};
   m.diffuse = m.diffuse_albedo.average();
   for (int k = 0; k < kLanes; ++k) {
     const Float share = micro.diffracted(wo.z, at.lambda.lambda_nm(k));

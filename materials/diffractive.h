@@ -48,6 +48,10 @@ struct Diffractive {
   /// lane's wavelength, each as likely, so the density is the mean over the lanes.
   [[nodiscard]] std::optional<BsdfSample> sample(Vec3 wo, const BsdfRandom& u, const ShadingPoint& at) const;
   [[nodiscard]] bool is_delta() const { return false; }
+  /// Share of light that the diffuse lobe sends to wo from all around.
+  [[nodiscard]] SampledSpectrum diffuse_albedo(Vec3, const ShadingPoint& at) const {
+    return reflectance.sample(at.lambda, at.uv, at.footprint) * diffuse_scale;
+  }
 
  private:
   /// What depends on wo alone: found once a sample.

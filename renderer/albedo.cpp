@@ -13,7 +13,6 @@
 #include "core/base/error.h"
 #include "core/base/overloaded.h"
 #include "core/spectra/color.h"
-#include "renderer/features.h"
 
 namespace spectrace {
 
@@ -88,8 +87,30 @@ std::array<Float, 4> draw(std::uint32_t i) {
   return u;
 }
 
+/// Of a material that tells what its diffuse lobe reflects.
+template <typename M>
+Rgb told_diffuse(const M& plain, Vec3 wo, const ShadingPoint& point) {
+  const Vec3 facing{wo.x, wo.y, std::abs(wo.z)};
+  Rgb diffuse{};
+  for (std::size_t g = 0; g < kGroups; ++g) {
+    const ShadingPoint at = with_lambda(point, white_light().lambda[g]);
+    white_light().add(plain.diffuse_albedo(facing, at), g, 1, diffuse);
+  }
+  return in_unit_range(diffuse);
+}
+
+/// The texture of what the diffuse lobe reflects.
+const Texture* reflectance_of(const Material& part) {
+  return std::visit(
+      [](const auto& m) -> const Texture* {
+        if constexpr (requires { m.reflectance.palette_size(); }) return &m.reflectance;
+        return nullptr;
+      },
+      part);
+}
+
 /// The mean over directions drawn by the BSDF itself.
-LobeAlbedo integrate(const Material& part, Float cosine) {
+LobeAlbedo integrate(const Material& part, Vec2 uv, Float cosine) {
   const WhiteLight& light = white_light();
   const std::optional<Lobe> only = only_lobe(part);
   const Float sine = std::sqrt(std::max(Float(0), 1 - cosine * cosine));
@@ -99,7 +120,7 @@ LobeAlbedo integrate(const Material& part, Float cosine) {
     const Float phi = 2 * std::numbers::pi_v<Float> * turn;
     const Vec3 wo{sine * std::cos(phi), sine * std::sin(phi), cosine};
     for (std::size_t g = 0; g < kGroups; ++g) {
-      const ShadingPoint at{.lambda = light.lambda[g]};
+      const ShadingPoint at{.lambda = light.lambda[g], .uv = uv};
       const auto s = sample(part, wo, {lobe, {u, v}}, at);
       if (!s) continue;
       SampledSpectrum diffuse, specular = s->weight;
@@ -116,10 +137,10 @@ LobeAlbedo integrate(const Material& part, Float cosine) {
   return {in_unit_range(albedo.diffuse), in_unit_range(albedo.specular)};
 }
 
-std::vector<LobeAlbedo> tabulate(const Material& part, Float side) {
+std::vector<LobeAlbedo> tabulate(const Material& part, Vec2 uv, Float side) {
   std::vector<LobeAlbedo> table(kNodes);
   tbb::parallel_for(std::size_t(0), kNodes, [&](std::size_t i) {
-    table[i] = integrate(part, side * std::max(kGrazing, Float(i) / Float(kNodes - 1)));
+    table[i] = integrate(part, uv, side * std::max(kGrazing, Float(i) / Float(kNodes - 1)));
   });
   return table;
 }
@@ -146,15 +167,21 @@ void AlbedoTables::add(const Material& part) {
       },
       part);
   if (!is_plain || tables_.contains(&part)) return;
-  Sides sides{.front = tabulate(part, 1), .back = {}};
-  if (keeps_sides(part)) sides.back = tabulate(part, -1);
-  tables_.emplace(&part, std::move(sides));
+  const Texture* texture = reflectance_of(part);
+  std::vector<Sides> by_palette(texture != nullptr ? std::max<std::size_t>(texture->palette_size(), 1) : 1);
+  for (std::size_t i = 0; i < by_palette.size(); ++i) {
+    const Vec2 uv = texture != nullptr ? texture->palette_uv(i) : Vec2{};
+    by_palette[i].front = tabulate(part, uv, 1);
+    if (keeps_sides(part)) by_palette[i].back = tabulate(part, uv, -1);
+  }
+  tables_.emplace(&part, std::move(by_palette));
 }
 
-LobeAlbedo AlbedoTables::look_up(const Material& part, Vec3 wo) const {
+LobeAlbedo AlbedoTables::look_up(const Material& part, std::size_t palette_index, Vec3 wo) const {
   const auto it = tables_.find(&part);
   SPECTRACE_CHECK(it != tables_.end());
-  const Table& table = wo.z < 0 && !it->second.back.empty() ? it->second.back : it->second.front;
+  const Sides& sides = it->second[palette_index];
+  const Table& table = wo.z < 0 && !sides.back.empty() ? sides.back : sides.front;
   const double position = std::min(1.0, std::abs(double(wo.z))) * double(kNodes - 1);
   const auto i = std::min(std::size_t(position), kNodes - 2);
   const double t = position - double(i);
@@ -179,20 +206,14 @@ LobeAlbedo AlbedoTables::at(const Material& material, Vec3 wo, const ShadingPoin
                                [&](const Masked& masked) { return of(masked.parts()[0]); },
                                [&](const NormalMapped& mapped) { return of(mapped.parts()[0]); },
                                [&](const auto& plain) {
-                                 LobeAlbedo albedo = look_up(material, wo);
-                                 if constexpr (requires { plain.diffuse_albedo(wo, point); }) {
-                                   if (!is_textured(material)) return albedo;
-                                   albedo.diffuse = {};
-                                   const Vec3 facing{wo.x, wo.y, std::abs(wo.z)};
-                                   for (std::size_t g = 0; g < kGroups; ++g) {
-                                     const SampledWavelengths& lambda = white_light().lambda[g];
-                                     white_light().add(
-                                         plain.diffuse_albedo(facing, with_lambda(point, lambda)), g, 1,
-                                         albedo.diffuse);
-                                   }
-                                   albedo.diffuse = in_unit_range(albedo.diffuse);
+                                 if constexpr (requires { plain.reflectance.palette_size(); }) {
+                                   const Texture& texture = plain.reflectance;
+                                   LobeAlbedo albedo = look_up(material, texture.palette_index(point.uv), wo);
+                                   if (texture.is_image()) albedo.diffuse = told_diffuse(plain, wo, point);
+                                   return albedo;
+                                 } else {
+                                   return look_up(material, 0, wo);
                                  }
-                                 return albedo;
                                }},
                     material);
 }

@@ -3,6 +3,7 @@
 // denoisers want to know of a surface, without the noise of light or wavelengths.
 #pragma once
 
+#include <cstddef>
 #include <unordered_map>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct LobeAlbedo {
   Rgb diffuse{}, specular{};
 };
 
-/// Tables by the cosine of the viewer for every part of every material; what varies over a surface is looked
-/// up where it is asked for. An anisotropic material's is its mean over the azimuth. Immutable.
+/// Tables by the cosine of the viewer for every part of every material and each spectrum of its texture; what
+/// images vary is looked up where it is asked for. An anisotropic material's is its mean over the azimuth.
+/// Immutable.
 class AlbedoTables {
  public:
   /// `materials` must stay where they are. Takes tens of milliseconds a material.
@@ -34,9 +36,9 @@ class AlbedoTables {
     Table front, back;
   };
   void add(const Material& part);
-  [[nodiscard]] LobeAlbedo look_up(const Material& part, Vec3 wo) const;
+  [[nodiscard]] LobeAlbedo look_up(const Material& part, std::size_t palette_index, Vec3 wo) const;
 
-  std::unordered_map<const Material*, Sides> tables_;
+  std::unordered_map<const Material*, std::vector<Sides>> tables_;  // by the palette of the texture
 };
 
 }  // namespace spectrace

@@ -3,14 +3,16 @@
 // glass, and its radiance by wavelength.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "core/spectra/lane_to_xyz.h"
 #include "renderer/albedo.h"
 #include "renderer/geometry.h"
 #include "renderer/layers.h"
+#include "renderer/lobe_shares.h"
+#include "renderer/pixel_sums.h"
 
 namespace spectrace {
 
@@ -22,11 +24,26 @@ struct FirstSurface {
 
 struct FirstHit {
   bool is_known = false;
-  LobeAlbedo albedo;
-  Vec3 normal;  ///< shading normal, world, on the viewer's side
-  Vec3 position;
-  double depth = 0;  ///< length of the path to it, mirrors and glass included [m]
+  double depth = 0;         ///< length of the path so far, mirrors and glass included [m]
+  FeatureNumbers features;  ///< once it is known
   FirstSurface surface;
+
+  /// `normal`: for shading, world, on the viewer's side; `position` [m], world.
+  void know(const LobeAlbedo& albedo, Vec3 normal, Vec3 position) {
+    is_known = true;
+    const auto set = [&](Feature feature, const std::array<double, 3>& numbers) {
+      std::copy(numbers.begin(), numbers.end(), features.begin() + feature_begin(feature));
+    };
+    const auto doubles = [](Vec3 v) { return std::array{double(v.x), double(v.y), double(v.z)}; };
+    Rgb sum{};
+    for (std::size_t c = 0; c < 3; ++c) sum[c] = std::min(1.0, albedo.diffuse[c] + albedo.specular[c]);
+    set(Feature::kDiffuseAlbedo, albedo.diffuse);
+    set(Feature::kSpecularAlbedo, albedo.specular);
+    set(Feature::kAlbedo, sum);
+    set(Feature::kNormal, doubles(normal));
+    set(Feature::kPosition, doubles(position));
+    features[feature_begin(Feature::kDepth)] = depth;
+  }
 
   /// After a way of `t`; whether it is a hole will be seen.
   void come_to(double t, const FirstSurface& met) {
@@ -47,12 +64,13 @@ struct LaneDeposits {
   std::array<Deposit, 2> deposits;
   std::size_t count = 0;
 
-  template <LayerSet kLayers, std::size_t kSize>
-  void add(const SampledWavelengths& lambda, const std::array<LaneSums, kSize>& sums) {
+  template <LayerSet kLayers>
+  void add(const SampledWavelengths& lambda, const LayerSums<kLayers>& sums) {
     Deposit& deposit = deposits[count++];
     deposit.lambda = lambda;
     for (std::size_t i = 0; i < kSpectralLayers.size(); ++i) {
-      if (kLayers.has(kSpectralLayers[i])) deposit.radiance[i] = sums[kLayers.slot(kSpectralLayers[i])];
+      const Layer layer = kSpectralLayers[i];
+      deposit.radiance[i] = sums.lit().has(layer) ? sums.of(layer) : LaneSums{};
     }
   }
 };

@@ -9,11 +9,11 @@
 
 #include "core/base/error.h"
 #include "core/math/concentric_disk.h"
-#include "core/spectra/color.h"
 #include "renderer/flush_denormals.h"
 #include "renderer/matte.h"
 #include "renderer/path_tracer.h"
 #include "renderer/pixel_sums.h"
+#include "renderer/sample_sums.h"
 
 namespace spectrace {
 
@@ -30,8 +30,10 @@ Ray camera_ray(const Camera& camera, const PathNumbers& numbers, int x, int y) {
 template <Features kFeatures>
 constexpr std::size_t row_size() {
   if (kFeatures.more_aovs) return slots::kCount;
-  if (kFeatures.specular_parts) return slots::xyz(Layer::kSpecularResidual) + 3;
-  return slots::xyz(kFeatures.lobe_layers ? Layer::kBackground : Layer::kBeauty) + 3;
+  const Layer last = kFeatures.specular_parts ? Layer::kSpecularResidual
+                     : kFeatures.lobe_layers  ? Layer::kBackground
+                                              : Layer::kBeauty;
+  return slots::xyz(last) + slots::kFour;
 }
 
 /// What the samples of one leaf bring to a pixel.
@@ -50,39 +52,6 @@ struct LeafSums {
     return *this;
   }
 };
-
-/// Halves, squares and the first hit of one sample.
-template <typename Row, Features kFeatures>
-void add_more_aovs(Row& row, const PathValue<kFeatures>& value, bool is_in_b) {
-  constexpr LayerSet kLayers = layer_set(kFeatures);
-  for_each_layer<kLayers>([&](auto layer) {
-    constexpr auto kMoment = std::size_t(decltype(layer)::value);
-    if constexpr (kMoment < kMomentLayers) {
-      const PathXyz& xyz = value.xyz[kLayers.slot(layer)];
-      const Rgb rgb = xyz_to_rgb({xyz[0], xyz[1], xyz[2]});
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (is_in_b) row[slots::b_xyz(kMoment) + c] += xyz[c];
-        row[slots::rgb_squares(kMoment) + c] += rgb[c] * rgb[c];
-      }
-    }
-  });
-  row[slots::kExtrapolated] += value.extrapolated;
-  const FirstHit& seen = value.first_hit;
-  if (!seen.is_known) return;
-  std::size_t at = 0;
-  const auto add = [&](double x) {
-    row[slots::kFeatures + at] += x;
-    row[slots::kFeatureSquares + at] += x * x;
-    ++at;
-  };
-  for (const double x : seen.albedo.diffuse) add(x);
-  for (const double x : seen.albedo.specular) add(x);
-  for (std::size_t c = 0; c < 3; ++c) add(std::min(1.0, seen.albedo.diffuse[c] + seen.albedo.specular[c]));
-  for (const Vec3& v : {seen.normal, seen.position}) {
-    for (const Float x : {v.x, v.y, v.z}) add(double(x));
-  }
-  add(seen.depth);
-}
 
 /// Each lane's radiance into the bin of its wavelength.
 void add_to_bins(std::vector<float>& sums, const FilmLayout& layout, const LaneDeposits& lanes) {
@@ -115,10 +84,16 @@ void add_to(LeafSums<kFeatures>& sums, const PathValue<kFeatures>& value, const 
   }
   constexpr LayerSet kLayers = layer_set(kFeatures);
   for_each_layer<kLayers>([&](auto layer) {
+    if (!value.lit.has(layer)) return;
     const PathXyz& xyz = value.xyz[kLayers.slot(layer)];
-    for (std::size_t c = 0; c < 3; ++c) row[slots::xyz(layer) + c] += xyz[c];
+    for (std::size_t c = 0; c < xyz.size(); ++c) row[slots::xyz(layer) + c] += xyz[c];
+    constexpr auto kMoment = std::size_t(decltype(layer)::value);
+    if constexpr (kFeatures.more_aovs && kMoment < kMomentLayers) add_moment(kMoment, xyz, is_in_b, row);
   });
-  if constexpr (kFeatures.more_aovs) add_more_aovs(row, value, is_in_b);
+  if constexpr (kFeatures.more_aovs) {
+    row[slots::kExtrapolated] += value.extrapolated;
+    if (value.first_hit.is_known) add_features(value.first_hit.features, row);
+  }
   if constexpr (kFeatures.spectral_film) {
     if (layout.bins) add_to_bins(sums.bins, layout, value.lanes);
   }
@@ -214,9 +189,9 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
   const FilmDesc& film = job.scene.film;
   const CropWindow window = film.window();
   const std::size_t bins = job.layout.bins_per_pixel();
-  LeafSums<kFeatures> leaf{.row = {}, .bins = std::vector<float>(bins)};
-  BlockSum<LeafSums<kFeatures>> block(leaf);
-  sums.rows.clear();
+  BlockSum<LeafSums<kFeatures>> block({.row = {}, .bins = std::vector<float>(bins)});
+  sums.rows.resize(tile.pixels() * job.kept_slots.size());
+  double* kept = sums.rows.data();
   sums.bins.clear();
   for (MatteCounts& counts : sums.mattes) counts.clear();
   PixelMattes mattes;
@@ -232,12 +207,13 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
           pack.add(Sampler(pixel, i, job.seed, job.scene.sampler), image_x, image_y);
         }
         pack.trace();
+        LeafSums<kFeatures>& leaf = block.begin_leaf();
         leaf.clear();
         pack.finish(leaf, mattes);
-        block.add(leaf);
+        block.end_leaf();
       }
       const LeafSums<kFeatures>& sum = block.sum();
-      for (const std::size_t slot : job.kept_slots) sums.rows.push_back(sum.row.v[slot]);
+      for (const std::size_t slot : job.kept_slots) *kept++ = sum.row.v[slot];
       sums.bins.insert(sums.bins.end(), sum.bins.begin(), sum.bins.end());
       if constexpr (kFeatures.more_aovs) {
         const auto film_pixel = std::uint32_t(y) * std::uint32_t(window.width) + std::uint32_t(x);

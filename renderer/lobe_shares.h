@@ -3,7 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <optional>
 
 #include "core/spectra/lane_to_xyz.h"
 #include "materials/bsdf.h"
@@ -13,6 +16,7 @@ namespace spectrace {
 
 /// By lane.
 struct LobeShares {
+  std::optional<Lobe> only;              ///< has all of it, and what follows means nothing
   SampledSpectrum diffuse;               ///< in [0, 1]; the rest is specular
   SampledSpectrum fresnel, diffraction;  ///< signed; the rest of specular is residual
 };
@@ -35,34 +39,64 @@ LobeShares lobe_shares(const LobeValues& lobes) {
   return share;
 }
 
-/// Of a material that has one lobe.
-inline LobeShares lobe_shares(Lobe only) {
-  LobeShares share;
-  (only == Lobe::kDiffuse ? share.diffuse : share.fresnel) = SampledSpectrum(1);
-  return share;
-}
-
-/// Adds `radiance` to the lobes' layers of `sums`, which are those of `kLayers` in their order.
+/// What a path has gathered, by layer.
 template <LayerSet kLayers>
-void add_split(std::span<LaneSums> sums, const SampledSpectrum& radiance, const LobeShares& share,
+class LayerSums {
+ public:
+  /// To be added to.
+  [[nodiscard]] LaneSums& operator[](Layer layer) {
+    LaneSums& sums = lanes_[kLayers.slot(layer)];
+    if (!lit_.has(layer)) sums = {};
+    lit_ = lit_ | LayerSet(layer);
+    return sums;
+  }
+
+  /// What something was added to; the other layers are 0.
+  [[nodiscard]] LayerSet lit() const { return lit_; }
+  /// Of a layer that is lit.
+  [[nodiscard]] const LaneSums& of(Layer layer) const { return lanes_[kLayers.slot(layer)]; }
+  /// The layer, which is lit, is the beauty, to the bit.
+  [[nodiscard]] bool is_all_light(Layer layer) const {
+    return std::memcmp(&of(layer), &of(Layer::kBeauty), sizeof(LaneSums)) == 0;
+  }
+  void clear() { lit_ = {}; }
+
+ private:
+  std::array<LaneSums, kLayers.size()> lanes_;  // of layers that are not lit: anything
+  LayerSet lit_;
+};
+
+/// Adds `radiance` to the lobes' layers.
+template <LayerSet kLayers>
+void add_split(LayerSums<kLayers>& sums, const SampledSpectrum& radiance, const LobeShares& share,
                [[maybe_unused]] bool is_direct) {
-  const auto to = [&](Layer layer) -> LaneSums& { return sums[kLayers.slot(layer)]; };
+  if (share.only) {
+    const bool diffuse = *share.only == Lobe::kDiffuse;
+    sums[diffuse ? Layer::kDiffuse : Layer::kSpecular] += radiance;
+    if constexpr (kLayers.has(Layer::kSpecularFresnel)) {
+      if (!diffuse) sums[Layer::kSpecularFresnel] += radiance;
+    }
+    if constexpr (kLayers.has(Layer::kDiffuseDirect)) {
+      if (is_direct) sums[diffuse ? Layer::kDiffuseDirect : Layer::kSpecularDirect] += radiance;
+    }
+    return;
+  }
   const auto part = [](Float all, Float of_it) { return double(all) * double(of_it); };
   const auto rest = [](Float all, Float of_it) { return double(all) - double(all) * double(of_it); };
-  to(Layer::kDiffuse).add(part, radiance, share.diffuse);
-  to(Layer::kSpecular).add(rest, radiance, share.diffuse);
+  sums[Layer::kDiffuse].add(part, radiance, share.diffuse);
+  sums[Layer::kSpecular].add(rest, radiance, share.diffuse);
   if constexpr (kLayers.has(Layer::kSpecularFresnel)) {
     const auto residual = [&](Float all, Float diffuse, Float fresnel, Float diffraction) {
       return rest(all, diffuse) - part(all, fresnel) - part(all, diffraction);
     };
-    to(Layer::kSpecularFresnel).add(part, radiance, share.fresnel);
-    to(Layer::kSpecularDiffraction).add(part, radiance, share.diffraction);
-    to(Layer::kSpecularResidual).add(residual, radiance, share.diffuse, share.fresnel, share.diffraction);
+    sums[Layer::kSpecularFresnel].add(part, radiance, share.fresnel);
+    sums[Layer::kSpecularDiffraction].add(part, radiance, share.diffraction);
+    sums[Layer::kSpecularResidual].add(residual, radiance, share.diffuse, share.fresnel, share.diffraction);
   }
   if constexpr (kLayers.has(Layer::kDiffuseDirect)) {
     if (!is_direct) return;
-    to(Layer::kDiffuseDirect).add(part, radiance, share.diffuse);
-    to(Layer::kSpecularDirect).add(rest, radiance, share.diffuse);
+    sums[Layer::kDiffuseDirect].add(part, radiance, share.diffuse);
+    sums[Layer::kSpecularDirect].add(rest, radiance, share.diffuse);
   }
 }
 

@@ -70,7 +70,10 @@ class PathTracer {
   [[nodiscard]] const std::optional<Ray>& shadow_ray() const { return shadow_ray_; }
   void receive_light() {
     add_to(Layer::kBeauty, awaited_);
-    if constexpr (kFeatures.lobe_layers) split(awaited_, awaited_lobes_.share, awaited_lobes_.is_direct);
+    if constexpr (kFeatures.lobe_layers) {
+      const bool is_direct = awaited_lobes_.is_direct;
+      split(awaited_, is_direct ? awaited_lobes_.share : split_.share, is_direct);
+    }
   }
 
   [[nodiscard]] const PathValue<kFeatures>& finish() {
@@ -159,21 +162,27 @@ class PathTracer {
     }
   }
 
-  void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[kLayers.slot(layer)] += radiance; }
+  void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[layer] += radiance; }
   void split(const SampledSpectrum& radiance, const LobeShares& share, bool is_direct) {
-    add_split<kLayers>(sums_, radiance, share, is_direct);
+    add_split(sums_, radiance, share, is_direct);
   }
 
   /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
   void flush() {
     const LaneToXyz weights(lambda_);
-    if constexpr (kFeatures.spectral_film) value_.lanes.template add<kLayers>(lambda_, sums_);
+    if constexpr (kFeatures.spectral_film) value_.lanes.add(lambda_, sums_);
+    PathXyz beauty{};
     for_each_layer<kLayers>([&](auto layer) {
-      LaneSums& sums = sums_[kLayers.slot(layer)];
-      if (sums.is_zero()) return;  // most layers of most paths
-      value_.valid &= weights.add(sums, value_.xyz[kLayers.slot(layer)], is_signed(layer));
-      sums = {};
+      if (!sums_.lit().has(layer)) return;  // most layers of most paths
+      PathXyz xyz = beauty;
+      if (layer == Layer::kBeauty || !sums_.is_all_light(layer)) {  // often one lobe has all of it
+        xyz = {};
+        value_.valid &= weights.add(sums_.of(layer), xyz, is_signed(layer));
+      }
+      if (layer == Layer::kBeauty) beauty = xyz;
+      value_.add(layer, xyz);
     });
+    sums_.clear();
   }
 
   // ---- What goes on -------------------------------------------------------------------------------------
@@ -212,7 +221,8 @@ class PathTracer {
     const Float weight = incident.is_delta_light ? Float(1) : power_heuristic(incident.pdf, bsdf.pdf);
     awaited_ = beta_ * bsdf.value_cos * light.radiance * (weight / incident.pdf);
     if constexpr (kFeatures.lobe_layers) {
-      awaited_lobes_ = {split_.is_made ? split_.share : shares(vertex, incident.wi), !split_.is_made};
+      awaited_lobes_.is_direct = !split_.is_made;
+      if (!split_.is_made) set_shares(vertex, incident.wi, awaited_lobes_.share);
     }
     const Ray ray = light.shadow_ray(ray_origin(vertex.point, light.wi));
     if constexpr (kFeatures.nested) {
@@ -228,9 +238,10 @@ class PathTracer {
     shadow_ray_ = ray;
   }
 
-  [[nodiscard]] LobeShares shares(const Vertex& vertex, Vec3 wi) const {
-    if (const std::optional<Lobe> only = scene_.only_lobe[vertex.point.material]) return lobe_shares(*only);
-    return lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, vertex.at));
+  void set_shares(const Vertex& vertex, Vec3 wi, LobeShares& share) const {
+    share.only = scene_.only_lobe[vertex.point.material];
+    if (share.only) return;  // the rest means nothing then
+    share = lobe_shares<kParts>(evaluate_lobes(vertex.material, vertex.wo, wi, vertex.at));
   }
 
   [[nodiscard]] std::optional<LightSample> sample_light_source(const Vertex& vertex, std::uint32_t light,
@@ -311,13 +322,9 @@ class PathTracer {
     if constexpr (kFeatures.more_aovs) {
       value_.first_hit.surface.is_known = true;
       if (is_delta(vertex.material)) return;
-      FirstHit& seen = value_.first_hit;
-      seen.is_known = true;
-      if (albedos_ != nullptr) {
-        seen.albedo = albedos_->at(vertex.material, vertex.wo, vertex.at);
-      }
-      seen.normal = vertex.frame.n;
-      seen.position = vertex.point.position;
+      const LobeAlbedo albedo =
+          albedos_ != nullptr ? albedos_->at(vertex.material, vertex.wo, vertex.at) : LobeAlbedo{};
+      value_.first_hit.know(albedo, vertex.frame.n, vertex.point.position);
     }
   }
 
@@ -345,7 +352,11 @@ class PathTracer {
     const Vec3 wi = vertex.frame.to_world(s->wi);
     if (!vertex.sides_agree(wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
-      if (!split_.is_made && !s->is_delta) split_ = {true, depth_, shares(vertex, s->wi)};
+      if (!split_.is_made && !s->is_delta) {
+        split_.is_made = true;
+        split_.depth = depth_;
+        set_shares(vertex, s->wi, split_.share);
+      }
     }
     beta_ *= s->weight;
     if constexpr (kFeatures.transmission) radiance_scale_ *= s->radiance_scale;
@@ -415,7 +426,7 @@ class PathTracer {
   int depth_ = 0;                // those of them that scattered the path: holes do not count
   SampledSpectrum beta_{1};
   Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
-  std::array<LaneSums, kLayers.size()> sums_{};
+  LayerSums<kLayers> sums_;
   PathValue<kFeatures> value_;
   [[no_unique_address]] IfWanted<kFeatures.lobe_layers, LobeSplit> split_;
   [[no_unique_address]] IfWanted<kFeatures.lobe_layers, AwaitedLobes> awaited_lobes_;

@@ -23,12 +23,19 @@ template <Features kFeatures>
 struct PathValue {
   static constexpr LayerSet kLayers = layer_set(kFeatures);
 
-  std::array<PathXyz, kLayers.size()> xyz{};
-  bool valid = true;  ///< all of it finite and, where a layer is not signed, >= 0
+  std::array<PathXyz, kLayers.size()> xyz;  ///< of layers that are not lit: anything
+  LayerSet lit;                             ///< the other layers are 0
+  bool valid = true;                        ///< all of it finite and, where a layer is not signed, >= 0
   /// Vertices on measured BRDFs, and those of them seen from beyond the last measured elevation.
   std::uint32_t measured = 0, extrapolated = 0;
   [[no_unique_address]] IfWanted<kFeatures.more_aovs, FirstHit> first_hit;
   [[no_unique_address]] IfWanted<kFeatures.spectral_film, LaneDeposits> lanes;
+
+  void add(Layer layer, const PathXyz& more) {
+    PathXyz& sum = xyz[kLayers.slot(layer)];
+    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] = more[c] + (lit.has(layer) ? sum[c] : 0);
+    lit = lit | LayerSet(layer);
+  }
 };
 
 }  // namespace spectrace

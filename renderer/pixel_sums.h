@@ -19,43 +19,45 @@ inline constexpr std::size_t kFeatureNumbers = 16;
 /// Where a feature's numbers begin among those of all.
 constexpr std::size_t feature_begin(Feature feature) { return 3 * std::size_t(feature); }
 constexpr std::size_t feature_size(Feature feature) { return feature == Feature::kDepth ? 1 : 3; }
+using FeatureNumbers = std::array<double, kFeatureNumbers>;
 
 /// Layers that have halves and variances: beauty, diffuse, specular.
 inline constexpr std::size_t kMomentLayers = 3;
 
-/// Places in the row. What leaner kernels fill comes first.
+/// Places in the row, which is made of fours, as registers are: the fourth beside three of a colour is free
+/// or holds a count. What leaner kernels fill comes first.
 namespace slots {
-/// Samples dropped as if never drawn: not finite, or negative.
-inline constexpr std::size_t kInvalid = 0;
+inline constexpr std::size_t kFour = 4;
 /// X, Y, Z of a layer.
-constexpr std::size_t xyz(Layer layer) { return 1 + 3 * std::size_t(layer); }
-inline constexpr std::size_t kXyzEnd = 1 + 3 * std::size_t(kLayerCount);
+constexpr std::size_t xyz(Layer layer) { return kFour * std::size_t(layer); }
+inline constexpr std::size_t kXyzEnd = kFour * std::size_t(kLayerCount);
 /// X, Y, Z of half B (samples_in_half_b), and squares of R, G, B, of the moment layers.
-constexpr std::size_t b_xyz(std::size_t layer) { return kXyzEnd + 3 * layer; }
-constexpr std::size_t rgb_squares(std::size_t layer) { return b_xyz(kMomentLayers) + 3 * layer; }
+constexpr std::size_t b_xyz(std::size_t layer) { return kXyzEnd + kFour * layer; }
+constexpr std::size_t rgb_squares(std::size_t layer) { return b_xyz(kMomentLayers) + kFour * layer; }
+/// Samples dropped as if never drawn: not finite, or negative; and those of half B.
+inline constexpr std::size_t kInvalid = xyz(Layer::kBeauty) + 3;
+inline constexpr std::size_t kInvalidB = b_xyz(0) + 3;
+/// Vertices on measured BRDFs seen from beyond the last measured elevation.
+inline constexpr std::size_t kExtrapolated = rgb_squares(0) + 3;
 /// The features' numbers, and their squares.
 inline constexpr std::size_t kFeatures = rgb_squares(kMomentLayers);
 inline constexpr std::size_t kFeatureSquares = kFeatures + kFeatureNumbers;
-inline constexpr std::size_t kInvalidB = kFeatureSquares + kFeatureNumbers;
-/// Vertices on measured BRDFs seen from beyond the last measured elevation.
-inline constexpr std::size_t kExtrapolated = kInvalidB + 1;
-inline constexpr std::size_t kCount = kExtrapolated + 1;
+inline constexpr std::size_t kCount = kFeatureSquares + kFeatureNumbers;
+static_assert(kFeatureNumbers % kFour == 0);
 }  // namespace slots
 
-/// What half B is told by, of each moment layer: the X, Y, Z of the right half of a block, and its invalid
-/// samples.
+/// What half B is told by: of each moment layer the X, Y, Z of the right half of a block, and beside those of
+/// the beauty its invalid samples.
 template <typename Visit>
 constexpr void for_each_half_slot(const Visit& visit) {
-  for (std::size_t m = 0; m < kMomentLayers; ++m) {
-    for (std::size_t c = 0; c < 3; ++c) visit(slots::b_xyz(m) + c, slots::xyz(Layer(m)) + c);
-  }
-  visit(slots::kInvalidB, slots::kInvalid);
+  constexpr std::size_t kNumbers = slots::kFour * kMomentLayers;
+  for (std::size_t i = 0; i < kNumbers; ++i) visit(slots::b_xyz(0) + i, slots::xyz(Layer(0)) + i);
 }
 
 /// The first `kSize` places.
 template <std::size_t kSize>
 struct PixelSums {
-  std::array<double, kSize> v{};
+  alignas(slots::kFour * sizeof(double)) std::array<double, kSize> v{};
 
   /// Joins the right half of a block to the left one.
   PixelSums& operator+=(const PixelSums& right) {

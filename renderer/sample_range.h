@@ -51,28 +51,34 @@ struct LeafRange {
 template <typename T>
 class BlockSum {
  public:
-  /// Room for a block of 2^`levels` leaves.
-  explicit BlockSum(T zero) : zero_(std::move(zero)) {}
+  /// `room`: what a leaf is copied from before there was one at its place.
+  explicit BlockSum(T room) : room_(std::move(room)) {}
 
-  void clear() { count_ = 0; }
-  /// `leaf` is what came after the ones before; it is taken from.
-  void add(T& leaf) {
-    std::size_t level = 0;
-    for (; (count_ >> level & 1) != 0; ++level) {
-      levels_[level] += leaf;
-      std::swap(levels_[level], leaf);
+  void clear() { count_ = height_ = 0; }
+  /// To be filled; what is there is left over from before. end_leaf() adds it.
+  [[nodiscard]] T& begin_leaf() {
+    if (height_ == stack_.size()) stack_.push_back(room_);
+    return stack_[height_++];
+  }
+  void end_leaf() {
+    // As many halves are now complete as the count has zeros at its end.
+    for (std::uint64_t blocks = ++count_; blocks % 2 == 0; blocks /= 2) {
+      --height_;
+      stack_[height_ - 1] += stack_[height_];
     }
-    if (level == levels_.size()) levels_.push_back(zero_);
-    std::swap(levels_[level], leaf);
-    ++count_;
+  }
+  void add(const T& leaf) {
+    begin_leaf() = leaf;
+    end_leaf();
   }
   /// Of the 2^k leaves added.
-  [[nodiscard]] const T& sum() const { return levels_[std::size_t(std::countr_zero(count_))]; }
+  [[nodiscard]] const T& sum() const { return stack_.front(); }
 
  private:
-  T zero_;
-  std::vector<T> levels_;  // sums of blocks of 2^level leaves, where count_ has that bit
-  std::uint64_t count_ = 0;
+  T room_;
+  std::vector<T> stack_;     // sums of the blocks that wait for their right halves, the largest first
+  std::size_t height_ = 0;   // of the stack; above it is room
+  std::uint64_t count_ = 0;  // leaves
 };
 
 /// Samples [first, last) of each pixel; first a multiple of kLeafSamples.

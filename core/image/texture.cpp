@@ -19,11 +19,6 @@ namespace {
 constexpr Float kMeanStepNm = 5;  // of a mean's spectrum: as fine as illuminants are tabulated
 constexpr NumberRange kRepeatRange{.min = 0, .max = 1e6, .min_open = true};
 
-bool is_odd(const Checkerboard& board, Vec2 uv) {
-  const Float cells = std::floor(uv.x * board.repeat_u) + std::floor(uv.y * board.repeat_v);
-  return cells - 2 * std::floor(cells / 2) != 0;
-}
-
 Texture parse_checkerboard(const JsonValue& json) {
   Checkerboard board;
   board.even = parse_spectrum(json.require("even"), SpectrumRole::kReflectance);
@@ -98,7 +93,7 @@ SampledSpectrum SpectralTexture::sample(const SampledWavelengths& lambda, Vec2 u
 SampledSpectrum Texture::sample(const SampledWavelengths& lambda, Vec2 uv, const Footprint& over) const {
   if (const auto* spectrum = std::get_if<Spectrum>(&v_)) return spectrum->sample(lambda);
   if (const auto* board = std::get_if<Checkerboard>(&v_)) {
-    return (is_odd(*board, uv) ? board->odd : board->even).sample(lambda);
+    return (board->is_odd(uv) ? board->odd : board->even).sample(lambda);
   }
   if (const auto* spectra = std::get_if<SpectralTexture>(&v_)) return spectra->sample(lambda, uv, over);
   return uplift_reflectance_fast(std::get<BitmapTexture>(v_).rgb_at(uv, over)).sample(lambda);

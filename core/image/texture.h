@@ -3,6 +3,7 @@
 // lookup, or an image of spectra.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <variant>
@@ -20,6 +21,11 @@ namespace spectrace {
 struct Checkerboard {
   Spectrum even, odd;
   Float repeat_u = 1, repeat_v = 1;
+
+  [[nodiscard]] bool is_odd(Vec2 uv) const {
+    const Float cells = std::floor(uv.x * repeat_u) + std::floor(uv.y * repeat_v);
+    return cells - 2 * std::floor(cells / 2) != 0;
+  }
 };
 
 /// Linear RGB, uplifted after it has been filtered; repeating; v = 0 at the bottom row.
@@ -63,6 +69,21 @@ class Texture {
   /// them.
   [[nodiscard]] Spectrum mean() const;
   [[nodiscard]] bool is_textured() const { return !std::holds_alternative<Spectrum>(v_); }
+  /// How many spectra the surface shows, if they can be counted; 0: an image. palette_index() is which of
+  /// them is at uv, palette_uv() a place that shows it.
+  [[nodiscard]] std::size_t palette_size() const {
+    if (is_image()) return 0;
+    return is_textured() ? 2 : 1;
+  }
+  [[nodiscard]] std::size_t palette_index(Vec2 uv) const {
+    const auto* board = std::get_if<Checkerboard>(&v_);
+    return board != nullptr && board->is_odd(uv) ? 1 : 0;
+  }
+  [[nodiscard]] Vec2 palette_uv(std::size_t index) const {
+    const auto* board = std::get_if<Checkerboard>(&v_);
+    if (board == nullptr) return {};
+    return {(Float(index) + Float(0.5)) / board->repeat_u, Float(0.5) / board->repeat_v};
+  }
   /// Its lookups have footprints.
   [[nodiscard]] bool is_image() const {
     return std::holds_alternative<BitmapTexture>(v_) || std::holds_alternative<SpectralTexture>(v_);

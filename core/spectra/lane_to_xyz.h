@@ -13,25 +13,20 @@ namespace spectrace {
 /// Radiance of one path by lane, in double: so its layers sum to its beauty even where X, Y and Z nearly
 /// cancel in a colour's G or B.
 struct LaneSums {
-  std::array<double, kLanes> v{};
+  std::array<double, kLanes> v;  // not 0 by itself: paths have layers that most of them never light
 
   LaneSums& operator+=(const SampledSpectrum& radiance) {
-    return add([](Float x) { return double(x); }, radiance);
-  }
-  [[nodiscard]] bool is_zero() const {
-    bool zero = true;
-    for (const double x : v) zero &= x == 0;
-    return zero;
+    add([](Float x) { return double(x); }, radiance);
+    return *this;
   }
   /// Adds f of the lanes of `spectra`.
   template <typename F, typename... Spectra>
-  LaneSums& add(const F& f, const Spectra&... spectra) {
+  void add(const F& f, const Spectra&... spectra) {
     double* const sums = v.data();
     const auto apply = [&](const auto*... in) {
       for (int i = 0; i < kLanes; ++i) sums[i] += f(in[i]...);
     };
     apply(spectra.v.data()...);
-    return *this;
   }
 };
 

@@ -239,6 +239,27 @@ TEST(Aovs, AlbedoIsTheColourOfTheSurfaceWithoutNoise) {
   });
 }
 
+TEST(Aovs, AlbedoOfACheckerboardIsThatOfTheCellThatIsSeen) {
+  const Spectrum even = TabulatedSpectrum({400, 700}, {Float(0.2), Float(0.8)}),
+                 odd = Spectrum::constant(Float(0.1));
+  SceneDesc description = lit_floor();
+  description.materials = {
+      {.name = "floor", .where = "/materials/0", .kind = Lambert{Checkerboard{even, odd, 301, 301}}}};
+  description.film = {8, 8};
+  const Rgb of_even = xyz_to_rgb(reflectance_to_xyz(even));
+  int evens = 0, odds = 0, mixed = 0;
+  for_each_pixel(render_scene(description, {.spp = 8, .aovs = kAllAovs}).image, [&](const Pixel& at) {
+    const double share = (at("diffuse_albedo.R") - 0.1) / (of_even[0] - 0.1);  // of the even cells
+    evens += std::abs(share - 1) < 0.01 ? 1 : 0;
+    odds += std::abs(share) < 0.01 ? 1 : 0;
+    mixed += share > 0.1 && share < 0.9 ? 1 : 0;
+    EXPECT_NEAR(at("diffuse_albedo.B"), 0.1 + share * (of_even[2] - 0.1), 3e-3);
+  });
+  EXPECT_GT(evens, 5);
+  EXPECT_GT(odds, 5);
+  EXPECT_GT(mixed, 1) << "pixels across the edge of a cell";
+}
+
 TEST(Aovs, AlbedoIsWhatTheSurfaceSendsBackOfAWhiteSky) {
   // A glossy ball under a sky of 1: its radiance is its albedo, lobe by lobe.
   SceneDesc description = empty_scene();

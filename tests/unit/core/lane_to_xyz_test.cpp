@@ -27,7 +27,7 @@ TEST(LaneToXyz, TerminatedLanesAddNothing) {
 TEST(LaneToXyz, TellsWhatNoPixelMayHold) {
   const LaneToXyz weights(hero_at_555_nm());
   PathXyz xyz{};
-  LaneSums sums;
+  LaneSums sums{};
   sums += SampledSpectrum(1);
   for (int lane = 1; lane < kLanes; ++lane) sums.v[lane] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(weights.add(sums, xyz)) << "of lanes that do not count";

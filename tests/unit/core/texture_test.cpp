@@ -59,6 +59,21 @@ TEST(Texture, CheckerboardAlternatesAlsoBelowZero) {
   EXPECT_EQ(at(-0.1f, -0.1f), 1);
 }
 
+TEST(Texture, PalettesHoldEverySpectrumThatTheSurfaceShows) {
+  const Texture plain{Spectrum::constant(Float(0.4))};
+  EXPECT_EQ(plain.palette_size(), 1u);
+  EXPECT_EQ(plain.palette_index({7, -3}), 0u);
+  EXPECT_EQ(Texture(BitmapTexture(random_image(2, 2))).palette_size(), 0u);
+  for (const Vec2 repeat : {Vec2{2, 4}, Vec2{Float(0.1), 1}, Vec2{1000, Float(1e-3)}}) {
+    const Texture board{Checkerboard{Spectrum::constant(1), Spectrum::constant(0), repeat.x, repeat.y}};
+    ASSERT_EQ(board.palette_size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(board.palette_index(board.palette_uv(i)), i);
+      EXPECT_EQ(board.sample(wavelengths_at(500), board.palette_uv(i))[0], i == 0 ? 1 : 0);
+    }
+  }
+}
+
 TEST(Texture, BitmapHasTheBottomRowAtVZero) {
   Image image(1, 4, {"R", "G", "B"});
   for (int y = 0; y < 4; ++y) image.at(0, y, 1) = float(y) / 4;
