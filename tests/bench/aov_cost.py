@@ -4,7 +4,8 @@
 
 --without-aovs builds the program a second time from a copy of the source in which not even the lines remain that a kernel
 without AOVs still has (the count of extrapolated vertices, the pointer to the albedo tables), and tells what those cost.
-Instructions are those of render_tile() and all below it (callgrind), of small copies of the scenes.
+--memory tells the most that runs of one sample a pixel hold, files written, at sizes of one's choice. Instructions are those of
+render_tile() and all below it (callgrind), of small copies of the scenes.
 """
 
 import argparse
@@ -52,6 +53,16 @@ def in_turns(program: Path, scene: Path, folder: Path, pairs: int, threads: int)
               f"(pairs: {', '.join(f'{x:.3f}' for x in sorted(values))})", flush=True)
 
 
+def peak_memory(program: Path, scene: Path, folder: Path, aovs: str) -> int:
+    """Bytes of one run, the files it writes included."""
+    process = subprocess.Popen([program, scene, "--spp", "1", "--aovs", aovs, "-o", folder / "out.exr"], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    if status != 0:
+        raise SystemExit(f"{scene}: {aovs}: status {status}")
+    return 1024 * usage.ru_maxrss
+
+
 def make_measurement(program: Path) -> None:
     """What material_ball shows."""
     measurement = ROOT / "demo-out/pearlescent.bsdf"
@@ -86,6 +97,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=256, help="pixels a side of the runs in turns (default %(default)s)")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--instructions", action="store_true", help="of each name, over none's")
+    parser.add_argument("--memory", nargs="+", type=int, default=[], metavar="SIZE", help="pixels a side")
     parser.add_argument("--without-aovs", type=Path, metavar="FOLDER", help="for the second build")
     arguments = parser.parse_args()
     program = arguments.spectrace.resolve()
@@ -95,6 +107,10 @@ def main() -> None:
         scenes = [ROOT / "scenes" / f"{name}.json" for name in arguments.scenes]
         for scene in scenes if arguments.pairs > 0 else ():
             in_turns(program, small_copy(scene, arguments.size, folder), folder, arguments.pairs, arguments.threads)
+        for scene in scenes:
+            for size in arguments.memory:
+                gigabytes = [peak_memory(program, small_copy(scene, size, folder), folder, aovs) / 1e9 for aovs in ("none", "denoise")]
+                print(f"{scene.stem:<24}{size} x {size}, GB: none {gigabytes[0]:.3f}, denoise {gigabytes[1]:.3f}", flush=True)
         if not arguments.instructions and not arguments.without_aovs:
             return
         small = [small_copy(scene, 24, folder) for scene in scenes]
