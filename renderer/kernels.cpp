@@ -91,7 +91,7 @@ void add_to(LeafSums<kFeatures>& sums, const PathValue<kFeatures>& value, const 
     if constexpr (kFeatures.more_aovs && kMoment < kMomentLayers) add_moment(kMoment, xyz, is_in_b, row);
   });
   if constexpr (kFeatures.more_aovs) {
-    row[slots::kExtrapolated] += value.extrapolated;
+    if (value.extrapolated != 0) row[slots::kExtrapolated] += value.extrapolated;
     if (value.first_hit.is_known) add_features(value.first_hit.features, row);
   }
   if constexpr (kFeatures.spectral_film) {
@@ -191,6 +191,7 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
   const std::size_t bins = job.layout.bins_per_pixel();
   BlockSum<LeafSums<kFeatures>> block({.row = {}, .bins = std::vector<float>(bins)});
   sums.rows.resize(tile.pixels() * job.kept_slots.size());
+  const std::span<const std::size_t> kept_slots(job.kept_slots);
   double* kept = sums.rows.data();
   sums.bins.clear();
   for (MatteCounts& counts : sums.mattes) counts.clear();
@@ -213,7 +214,8 @@ TileCounts render_tile(const RenderJob& job, SampleRange samples, Tile tile, Til
         block.end_leaf();
       }
       const LeafSums<kFeatures>& sum = block.sum();
-      for (const std::size_t slot : job.kept_slots) *kept++ = sum.row.v[slot];
+      kept = std::transform(kept_slots.begin(), kept_slots.end(), kept,
+                            [&](std::size_t slot) { return sum.row.v[slot]; });
       sums.bins.insert(sums.bins.end(), sum.bins.begin(), sum.bins.end());
       if constexpr (kFeatures.more_aovs) {
         const auto film_pixel = std::uint32_t(y) * std::uint32_t(window.width) + std::uint32_t(x);

@@ -66,6 +66,10 @@ struct LayerSet {
     a.bits |= b.bits;
     return a;
   }
+  friend constexpr LayerSet operator&(LayerSet a, LayerSet b) {
+    a.bits &= b.bits;
+    return a;
+  }
   friend constexpr bool operator==(LayerSet, LayerSet) = default;
 
   static constexpr unsigned bit(Layer layer) { return 1U << unsigned(layer); }

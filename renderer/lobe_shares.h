@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstring>
 #include <optional>
 
 #include "core/spectra/lane_to_xyz.h"
@@ -55,32 +54,42 @@ class LayerSums {
   [[nodiscard]] LayerSet lit() const { return lit_; }
   /// Of a layer that is lit.
   [[nodiscard]] const LaneSums& of(Layer layer) const { return lanes_[kLayers.slot(layer)]; }
-  /// The layer, which is lit, is the beauty, to the bit.
-  [[nodiscard]] bool is_all_light(Layer layer) const {
-    return std::memcmp(&of(layer), &of(Layer::kBeauty), sizeof(LaneSums)) == 0;
+  /// What was added to the beauty went whole to `layers`; the others differ from it from now on.
+  void went_whole_to(LayerSet layers) { beauty_ = beauty_ & layers; }
+  /// The layer is the beauty, to the bit.
+  [[nodiscard]] bool is_beauty(Layer layer) const { return beauty_.has(layer); }
+  void clear() {
+    lit_ = {};
+    beauty_ = kLayers;
   }
-  void clear() { lit_ = {}; }
 
  private:
   std::array<LaneSums, kLayers.size()> lanes_;  // of layers that are not lit: anything
-  LayerSet lit_;
+  LayerSet lit_, beauty_ = kLayers;
 };
 
-/// Adds `radiance` to the lobes' layers.
+/// Adds `radiance`, which the beauty has got, to the lobes' layers.
 template <LayerSet kLayers>
 void add_split(LayerSums<kLayers>& sums, const SampledSpectrum& radiance, const LobeShares& share,
                [[maybe_unused]] bool is_direct) {
   if (share.only) {
     const bool diffuse = *share.only == Lobe::kDiffuse;
-    sums[diffuse ? Layer::kDiffuse : Layer::kSpecular] += radiance;
+    LayerSet layers;
+    const auto add = [&](Layer layer) {
+      sums[layer] += radiance;
+      layers = layers | LayerSet(layer);
+    };
+    add(diffuse ? Layer::kDiffuse : Layer::kSpecular);
     if constexpr (kLayers.has(Layer::kSpecularFresnel)) {
-      if (!diffuse) sums[Layer::kSpecularFresnel] += radiance;
+      if (!diffuse) add(Layer::kSpecularFresnel);
     }
     if constexpr (kLayers.has(Layer::kDiffuseDirect)) {
-      if (is_direct) sums[diffuse ? Layer::kDiffuseDirect : Layer::kSpecularDirect] += radiance;
+      if (is_direct) add(diffuse ? Layer::kDiffuseDirect : Layer::kSpecularDirect);
     }
+    sums.went_whole_to(layers);
     return;
   }
+  sums.went_whole_to({});
   const auto part = [](Float all, Float of_it) { return double(all) * double(of_it); };
   const auto rest = [](Float all, Float of_it) { return double(all) - double(all) * double(of_it); };
   sums[Layer::kDiffuse].add(part, radiance, share.diffuse);

@@ -150,12 +150,14 @@ class PathTracer {
     if constexpr (kFeatures.lobe_layers) {
       if (depth_ == 0) {
         add_to(kDirect, radiance);
+        sums_.went_whole_to(LayerSet(kDirect));
       } else if (!split_.is_made) {
         add_to(Layer::kSpecular, radiance);
         if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
         if constexpr (kLayers.has(Layer::kSpecularDirect)) {
           if (depth_ == 1) add_to(Layer::kSpecularDirect, radiance);
         }
+        sums_.went_whole_to(LayerSet(Layer::kSpecular));
       } else {
         split(radiance, split_.share, depth_ == split_.depth + 1);
       }
@@ -175,7 +177,7 @@ class PathTracer {
     for_each_layer<kLayers>([&](auto layer) {
       if (!sums_.lit().has(layer)) return;  // most layers of most paths
       PathXyz xyz = beauty;
-      if (layer == Layer::kBeauty || !sums_.is_all_light(layer)) {  // often one lobe has all of it
+      if (layer == Layer::kBeauty || !sums_.is_beauty(layer)) {  // often one lobe has all of it
         xyz = {};
         value_.valid &= weights.add(sums_.of(layer), xyz, is_signed(layer));
       }

@@ -33,8 +33,12 @@ struct PathValue {
 
   void add(Layer layer, const PathXyz& more) {
     PathXyz& sum = xyz[kLayers.slot(layer)];
-    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] = more[c] + (lit.has(layer) ? sum[c] : 0);
-    lit = lit | LayerSet(layer);
+    if (lit.has(layer)) {
+      for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += more[c];
+    } else {
+      sum = more;
+      lit = lit | LayerSet(layer);
+    }
   }
 };
 

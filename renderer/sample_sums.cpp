@@ -10,19 +10,16 @@ namespace {
 /// What X, Y and Z add to (R, G, B, 0), side by side as registers hold them.
 using Columns = std::array<std::array<double, slots::kFour>, 3>;
 
-const Columns& xyz_to_rgb_columns() {
-  static const Columns kMade = [] {
-    Columns columns{};
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      Xyz unit{};
-      unit[i] = 1;
-      const Rgb rgb = xyz_to_rgb(unit);
-      for (std::size_t c = 0; c < rgb.size(); ++c) columns[i][c] = rgb[c];
-    }
-    return columns;
-  }();
-  return kMade;
-}
+const Columns kXyzToRgb = [] {
+  Columns columns{};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    Xyz unit{};
+    unit[i] = 1;
+    const Rgb rgb = xyz_to_rgb(unit);
+    for (std::size_t c = 0; c < rgb.size(); ++c) columns[i][c] = rgb[c];
+  }
+  return columns;
+}();
 
 SPECTRACE_WIDE void add_rgb_squares(const Columns& columns, const double* xyz, double* squares) {
   const double x = xyz[0], y = xyz[1], z = xyz[2];
@@ -43,7 +40,7 @@ SPECTRACE_WIDE void add_features(const double* features, double* row) {
 }  // namespace
 
 void add_moment(std::size_t layer, const PathXyz& xyz, bool is_in_b, FullRow& row) {
-  add_rgb_squares(xyz_to_rgb_columns(), xyz.data(), &row[slots::rgb_squares(layer)]);
+  add_rgb_squares(kXyzToRgb, xyz.data(), &row[slots::rgb_squares(layer)]);
   if (!is_in_b) return;
   for (std::size_t c = 0; c < xyz.size(); ++c) row[slots::b_xyz(layer) + c] += xyz[c];
 }
