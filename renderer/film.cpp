@@ -213,11 +213,11 @@ void Film::append(const Film& next) {
 }
 
 std::uint64_t Film::invalid_samples() const {
+  SPECTRACE_CHECK(slots_.front() == slots::kInvalid);
   double total = 0;
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
     const std::size_t count = blocks(tile).size();
     for_each_pixel(tiles_[tile], [&](std::size_t pixel) {
-      // kInvalid is the first that is kept.
       for (std::size_t b = 0; b < count; ++b) total += planes_[b].rows[pixel * slots_.size()];
     });
   }

@@ -10,8 +10,8 @@
 
 #include "renderer/albedo.h"
 #include "renderer/geometry.h"
+#include "renderer/layer_sums.h"
 #include "renderer/layers.h"
-#include "renderer/lobe_shares.h"
 #include "renderer/pixel_sums.h"
 
 namespace spectrace {

@@ -8,6 +8,7 @@
 #include "core/math/math.h"
 #include "core/math/sampler.h"
 #include "renderer/lobe_shares.h"
+#include "renderer/path_light.h"
 #include "renderer/path_value.h"
 #include "renderer/path_vertex.h"
 #include "renderer/render_job.h"
@@ -23,8 +24,6 @@ inline constexpr Float kMinSurvival = Float(0.05), kMaxSurvival = Float(0.95);
 template <Features kFeatures>
 class PathTracer {
  public:
-  static constexpr LayerSet kLayers = layer_set(kFeatures);
-
   PathTracer(const RenderJob& job, const Sampler& sampler, Float wavelength, const Ray& camera_ray)
       : scene_(job.scene),
         albedos_(job.albedos),
@@ -68,16 +67,10 @@ class PathTracer {
   /// Towards the light that advance() has chosen, if it may shine; receive_light() where nothing is in
   /// between.
   [[nodiscard]] const std::optional<Ray>& shadow_ray() const { return shadow_ray_; }
-  void receive_light() {
-    add_to(Layer::kBeauty, awaited_);
-    if constexpr (kFeatures.lobe_layers) {
-      const bool is_direct = awaited_lobes_.is_direct;
-      split(awaited_, is_direct ? awaited_lobes_.share : split_.share, is_direct);
-    }
-  }
+  void receive_light() { light_.receive_awaited(); }
 
   [[nodiscard]] const PathValue<kFeatures>& finish() {
-    flush();
+    light_.move_to(lambda_, value_);
     return value_;
   }
 
@@ -115,7 +108,8 @@ class PathTracer {
         const Float choice = scene_.lights.probability(scene_.lights.environment_index(), last_receiver_);
         weight = bsdf_mis_weight(environment->pdf(direction) * choice);
       }
-      add<Layer::kBackground>(beta_ * environment->radiance(direction, lambda_) * weight);
+      light_.template add<Layer::kBackground>(beta_ * environment->radiance(direction, lambda_) * weight,
+                                              depth_);
     }
   }
 
@@ -128,7 +122,7 @@ class PathTracer {
                                     point.position, point.normal_g);
         weight = bsdf_mis_weight(pdf * scene_.lights.probability(point.light, last_receiver_));
       }
-      add<Layer::kEmission>(beta_ * emission(point.light) * weight);
+      light_.template add<Layer::kEmission>(beta_ * emission(point.light) * weight, depth_);
     }
   }
 
@@ -140,51 +134,6 @@ class PathTracer {
       emission_ = spectrum.sample(lambda_);
     }
     return emission_;
-  }
-
-  /// Radiance that goes to the first non-delta hit's lobes in its shares; seen without one, to `kDirect`
-  /// (camera) or to the specular layer (through mirrors and glass).
-  template <Layer kDirect>
-  void add(const SampledSpectrum& radiance) {
-    add_to(Layer::kBeauty, radiance);
-    if constexpr (kFeatures.lobe_layers) {
-      if (depth_ == 0) {
-        add_to(kDirect, radiance);
-        sums_.went_whole_to(LayerSet(kDirect));
-      } else if (!split_.is_made) {
-        add_to(Layer::kSpecular, radiance);
-        if constexpr (kFeatures.specular_parts) add_to(Layer::kSpecularFresnel, radiance);
-        if constexpr (kLayers.has(Layer::kSpecularDirect)) {
-          if (depth_ == 1) add_to(Layer::kSpecularDirect, radiance);
-        }
-        sums_.went_whole_to(LayerSet(Layer::kSpecular));
-      } else {
-        split(radiance, split_.share, depth_ == split_.depth + 1);
-      }
-    }
-  }
-
-  void add_to(Layer layer, const SampledSpectrum& radiance) { sums_[layer] += radiance; }
-  void split(const SampledSpectrum& radiance, const LobeShares& share, bool is_direct) {
-    add_split(sums_, radiance, share, is_direct);
-  }
-
-  /// Turns the lanes gathered so far into XYZ, under the densities they were gathered with.
-  void flush() {
-    const LaneToXyz weights(lambda_);
-    if constexpr (kFeatures.spectral_film) value_.lanes.add(lambda_, sums_);
-    PathXyz beauty{};
-    for_each_layer<kLayers>([&](auto layer) {
-      if (!sums_.lit().has(layer)) return;  // most layers of most paths
-      PathXyz xyz = beauty;
-      if (layer == Layer::kBeauty || !sums_.is_beauty(layer)) {  // often one lobe has all of it
-        xyz = {};
-        value_.valid &= weights.add(sums_.of(layer), xyz, is_signed(layer));
-      }
-      if (layer == Layer::kBeauty) beauty = xyz;
-      value_.add(layer, xyz);
-    });
-    sums_.clear();
   }
 
   // ---- What goes on -------------------------------------------------------------------------------------
@@ -221,17 +170,16 @@ class PathTracer {
     if (bsdf.value_cos.is_zero()) return;
     const LightSample& light = incident.light;
     const Float weight = incident.is_delta_light ? Float(1) : power_heuristic(incident.pdf, bsdf.pdf);
-    awaited_ = beta_ * bsdf.value_cos * light.radiance * (weight / incident.pdf);
+    light_.await(beta_ * bsdf.value_cos * light.radiance * (weight / incident.pdf));
     if constexpr (kFeatures.lobe_layers) {
-      awaited_lobes_.is_direct = !split_.is_made;
-      if (!split_.is_made) set_shares(vertex, incident.wi, awaited_lobes_.share);
+      if (LobeShares* const share = light_.shares_of_awaited()) set_shares(vertex, incident.wi, *share);
     }
     const Ray ray = light.shadow_ray(ray_origin(vertex.point, light.wi));
     if constexpr (kFeatures.nested) {
       if (scene_.has_holes) {
         const Float visible = visibility_through_holes(ray, light);
         if (visible > 0) {
-          awaited_ *= visible;
+          light_.dim_awaited(visible);
           receive_light();
         }
         return;
@@ -354,11 +302,7 @@ class PathTracer {
     const Vec3 wi = vertex.frame.to_world(s->wi);
     if (!vertex.sides_agree(wi, s->wi)) return false;
     if constexpr (kFeatures.lobe_layers) {
-      if (!split_.is_made && !s->is_delta) {
-        split_.is_made = true;
-        split_.depth = depth_;
-        set_shares(vertex, s->wi, split_.share);
-      }
+      if (!light_.is_split() && !s->is_delta) set_shares(vertex, s->wi, light_.split_at(depth_));
     }
     beta_ *= s->weight;
     if constexpr (kFeatures.transmission) radiance_scale_ *= s->radiance_scale;
@@ -384,7 +328,7 @@ class PathTracer {
   /// it is kept (throwing it away is unbiased as well, but coloured noise).
   void terminate_secondary() {
     terminate_next_ = false;
-    flush();
+    light_.move_to(lambda_, value_);
     lambda_.terminate_secondary();
   }
 
@@ -401,17 +345,6 @@ class PathTracer {
     return true;
   }
 
-  /// The first non-delta hit parts what arrives from behind it by lobe.
-  struct LobeSplit {
-    bool is_made = false;
-    int depth = 0;
-    LobeShares share;
-  };
-  struct AwaitedLobes {
-    LobeShares share;
-    bool is_direct = false;
-  };
-
   const Scene& scene_;
   const AlbedoTables* albedos_;
   Sampler sampler_;
@@ -422,16 +355,13 @@ class PathTracer {
   std::optional<Ray> shadow_ray_;
   const Spectrum* emission_of_ = nullptr;  // whose emission_ is, at these wavelengths
   SampledSpectrum emission_;
-  SampledSpectrum awaited_;      // light that arrives unless something lies between
   bool terminate_next_ = false;  // once the light of this vertex has arrived
   std::uint32_t vertex_ = 0;     // surfaces met: what random numbers are named after
   int depth_ = 0;                // those of them that scattered the path: holes do not count
   SampledSpectrum beta_{1};
   Float radiance_scale_ = 1;  // what refraction has put into beta_, and takes back
-  LayerSums<kLayers> sums_;
+  PathLight<kFeatures> light_;
   PathValue<kFeatures> value_;
-  [[no_unique_address]] IfWanted<kFeatures.lobe_layers, LobeSplit> split_;
-  [[no_unique_address]] IfWanted<kFeatures.lobe_layers, AwaitedLobes> awaited_lobes_;
   bool last_was_delta_ = true;  // the camera counts as one: no light sample competes
   Float last_pdf_ = 0;
   Receiver last_receiver_;

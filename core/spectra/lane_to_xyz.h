@@ -30,7 +30,7 @@ struct LaneSums {
   }
 };
 
-/// X, Y and Z of one path; the fourth fills the register.
+/// X, Y and Z of one path; the fourth fills the register and is 0.
 using PathXyz = std::array<double, 4>;
 
 /// How much each lane of a path adds to X, Y and Z: (x̄, ȳ, z̄)(λ) / pdf / kLanes / ∫ȳ.
