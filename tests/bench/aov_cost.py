@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What AOVs cost: whole runs with "denoise" and with "none" in turns, and with --instructions those of each name over none's.
 
+"CPU of samples" leaves out what runs of one sample take: start, albedo tables, files.
 --without-aovs builds the program a second time from a copy of the source in which not even the lines remain that a kernel
 without AOVs still has (the count of extrapolated vertices, the pointer to the albedo tables), and tells what those cost.
 --memory tells the most that runs of one sample a pixel hold, files written, at sizes of one's choice. Instructions are those of
@@ -33,10 +34,10 @@ LINES = (
 )
 
 
-def timed(program: Path, scene: Path, folder: Path, aovs: str, threads: int) -> tuple[float, float]:
+def timed(program: Path, scene: Path, folder: Path, aovs: str, threads: int, spp: int) -> tuple[float, float]:
     """Wall and CPU seconds of a whole run."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    subprocess.run([program, scene, "--spp", str(SPP), "--threads", str(threads), "--aovs", aovs, "-o", folder / "out.exr"],
+    subprocess.run([program, scene, "--spp", str(spp), "--threads", str(threads), "--aovs", aovs, "-o", folder / "out.exr"],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -46,10 +47,12 @@ def in_turns(program: Path, scene: Path, folder: Path, pairs: int, threads: int)
     ratios = []
     for pair in range(pairs):
         order = ("none", "denoise") if pair % 2 == 0 else ("denoise", "none")
-        took = {aovs: timed(program, scene, folder, aovs, threads) for aovs in order}
-        ratios.append([d / n for d, n in zip(took["denoise"], took["none"])])
-    for kind, values in zip(("wall", "CPU"), zip(*ratios)):
-        print(f"{scene.stem:<24}denoise over none, {kind:<6}{statistics.median(values):>8.3f}   "
+        whole = {aovs: timed(program, scene, folder, aovs, threads, SPP) for aovs in order}
+        start = {aovs: timed(program, scene, folder, aovs, threads, 1) for aovs in order}
+        (none_wall, none_cpu), (wall, cpu) = whole["none"], whole["denoise"]
+        ratios.append((wall / none_wall, cpu / none_cpu, (cpu - start["denoise"][1]) / (none_cpu - start["none"][1])))
+    for kind, values in zip(("wall", "CPU", "CPU of samples"), zip(*ratios)):
+        print(f"{scene.stem:<24}denoise over none, {kind:<16}{statistics.median(values):>8.3f}   "
               f"(pairs: {', '.join(f'{x:.3f}' for x in sorted(values))})", flush=True)
 
 
